@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of `physpring`, one file each. Add...Command(app) gives `app` the subcommand, its
+// flags and a callback: flags -> options -> one library call -> report. A callback throws Error.
+#ifndef PHYSPRING_CLI_COMMANDS_H_
+#define PHYSPRING_CLI_COMMANDS_H_
+
+#include <CLI/CLI.hpp>
+
+namespace physpring {
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_COMMANDS_H_

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program `physpring`. Exit status: 0 done, 1 failed (one line on stderr), 2 bad usage.
+#include <cstdio>
+#include <exception>
+
+#include "cli/commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
+  app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {  // also how --help and --version end
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "physpring: %s\n", error.what());
+    return 1;
+  }
+}

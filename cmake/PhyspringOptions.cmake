@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+# All compiler flags of the project, once: every target links `physpring_options`.
+
+option(PHYSPRING_WERROR "Treat warnings as errors" OFF)
+option(PHYSPRING_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo)
+endif()
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O3 -g")  # no -DNDEBUG: asserts stay on
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)  # an installed program still finds libmujoco
+
+add_library(physpring_options INTERFACE)
+target_compile_features(physpring_options INTERFACE cxx_std_20)
+target_compile_definitions(physpring_options INTERFACE PHYSPRING_VERSION="${PROJECT_VERSION}")
+target_include_directories(physpring_options INTERFACE "${PROJECT_SOURCE_DIR}")
+target_compile_options(physpring_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast
+  -Wcast-qual -Wvla
+  $<$<BOOL:${PHYSPRING_WERROR}>:-Werror>
+  # a fused multiply-add rounds once instead of twice: without it every machine gives the same bits
+  -ffp-contract=off)
+
+if(PHYSPRING_SANITIZE)
+  set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(physpring_options INTERFACE -O1 ${sanitize})
+  target_link_options(physpring_options INTERFACE ${sanitize})
+endif()

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+# One CMake target a room, one executable a test file.
+
+# physpring_room(twin SOURCES npz.cc ... LIBS Eigen3::Eigen ...)
+# makes the static library physpring_twin. Its libraries reach those who link it.
+function(physpring_room name)
+  cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;LIBS")
+  if(NOT room_SOURCES)
+    add_library(physpring_${name} INTERFACE)
+    target_link_libraries(physpring_${name} INTERFACE physpring_options ${room_LIBS})
+    return()
+  endif()
+  add_library(physpring_${name} STATIC ${room_SOURCES})
+  target_link_libraries(physpring_${name} PUBLIC physpring_options ${room_LIBS})
+endfunction()
+
+# physpring_test(twin/npz_test.cc LIBS physpring_twin [LABELS slow] [SUPPORT support/x.cc ...])
+# makes the program twin_npz_test and one CTest test for each TEST in it. Tests with the label
+# `slow` are left out of the default suite.
+function(physpring_test source)
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "" "LIBS;LABELS;SUPPORT")
+  string(REGEX REPLACE "\\.cc$" "" name "${source}")
+  string(REPLACE "/" "_" name "${name}")
+  add_executable(${name} ${source} ${test_SUPPORT})
+  target_link_libraries(${name} PRIVATE physpring_options ${test_LIBS} GTest::gtest_main)
+  gtest_discover_tests(${name}
+    TEST_PREFIX "${name}."
+    DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS "${test_LABELS}" TIMEOUT 300)
+endfunction()
