@@ -5,9 +5,8 @@
 #   a wheel folder      .../site-packages/mujoco, or the folder that holds it
 #   a release tarball   mujoco-4.0.0/ with include/mujoco/ and lib/
 #   an install prefix   /opt/mujoco or /usr/local, also of an installed CMake package
-# and is then the only place searched. Without it: the wheel that scripts/setup put into
-# .deps/mujoco, then CMAKE_PREFIX_PATH and the system. A version other than the one asked for is
-# refused. Sets MuJoCo_VERSION, MuJoCo_INCLUDE_DIR and MuJoCo_LIBRARY.
+# and is then the only place searched. Without it: CMAKE_PREFIX_PATH, the wheel that scripts/setup
+# put into .deps/mujoco, the system. A version other than the one asked for is refused. Sets MuJoCo_VERSION, MuJoCo_INCLUDE_DIR and MuJoCo_LIBRARY.
 
 if(DEFINED MuJoCo_ROOT)
   set(_root "${MuJoCo_ROOT}")
@@ -23,7 +22,7 @@ if(_root)
   set(_searched "${_root} (MuJoCo_ROOT)")
 else()
   set(_where HINTS "${CMAKE_CURRENT_LIST_DIR}/../.deps/mujoco")
-  set(_searched ".deps/mujoco, CMAKE_PREFIX_PATH and the system")
+  set(_searched "CMAKE_PREFIX_PATH, .deps/mujoco and the system")
 endif()
 
 # searched again at every run, so that a new MuJoCo_ROOT takes effect
