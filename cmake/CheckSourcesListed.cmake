@@ -2,6 +2,7 @@
 # cmake -P CheckSourcesListed.cmake: fails when a source below a room, tests/ or bench/ is missing
 # in that folder's CMakeLists.txt (sources are listed by name, so nobody would build it).
 
+cmake_minimum_required(VERSION 3.25)
 get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}" DIRECTORY)
 file(GLOB lists RELATIVE "${root}" "${root}/*/CMakeLists.txt")
 set(missing "")
