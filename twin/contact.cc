@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/contact.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "twin/neighbours.h"
+
+namespace physpring {
+namespace {
+
+template <class Real>
+Eigen::Matrix<Real, 3, 1> X(const NodeState<Real>& node) {
+  return {node.x[0], node.x[1], node.x[2]};
+}
+
+template <class Real>
+void AddX(const Eigen::Matrix<Real, 3, 1>& value, NodeState<Real>* node) {
+  for (int j = 0; j < 3; ++j) node->x[j] += value[j];
+}
+
+template <class Real>
+Eigen::Matrix<Real, 3, 3> Cross(const Eigen::Matrix<Real, 3, 1>& w) {
+  Eigen::Matrix<Real, 3, 3> m;
+  m << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return m;
+}
+
+// A geom's pose `elapsed` seconds after the start of the frame.
+Geom Moved(const Geom& geom, double elapsed) {
+  Geom moved = geom;
+  moved.position += elapsed * geom.velocity;
+  const double angle = elapsed * geom.angular_velocity.norm();
+  if (angle > 0) {
+    moved.rotation = Eigen::AngleAxisd(angle, geom.angular_velocity.normalized()) * geom.rotation;
+  }
+  return moved;
+}
+
+}  // namespace
+
+template <class Real>
+Contact<Real>::Contact(const SpringMassSystem& system, const Environment& environment)
+    : nodes_(system.node_count()), has_ground_(environment.ground.has_value()) {
+  if (has_ground_) {
+    ground_normal_ = environment.ground->head<3>().cast<Real>();
+    ground_offset_ = static_cast<Real>((*environment.ground)[3]);
+  }
+  SetParameters(system);
+  if (distance_ > 0) {
+    never_ = PairsWithin(system.position.leftCols(nodes_), system.contact.collision_distance);
+    for (const auto& [a, b] : system.springs) never_.push_back({std::min(a, b), std::max(a, b)});
+    std::sort(never_.begin(), never_.end());
+  }
+}
+
+template <class Real>
+void Contact<Real>::SetParameters(const SpringMassSystem& system) {
+  const ContactCoefficients& c = system.contact;
+  laws_.surface = {static_cast<Real>(c.restitution), static_cast<Real>(c.friction)};
+  laws_.object = {static_cast<Real>(c.object_restitution), static_cast<Real>(c.object_friction)};
+  distance_ = static_cast<Real>(c.collision_distance);
+  radius_.resize(nodes_);
+  mass_.resize(nodes_);
+  for (int i = 0; i < nodes_; ++i) {
+    radius_[i] = static_cast<Real>(system.contact_radius[i]);
+    mass_[i] = static_cast<Real>(system.mass[i]);
+  }
+}
+
+template <class Real>
+typename Contact<Real>::Pairs Contact<Real>::FindPairs(const NodeStates<Real>& state,
+                                                       double frame_time) const {
+  if (distance_ <= 0) return {};
+  Points position(3, nodes_);
+  double fastest = 0;
+  for (int i = 0; i < nodes_; ++i) {
+    for (int j = 0; j < 3; ++j) position(j, i) = static_cast<double>(state[i].x[j]);
+    fastest = std::max(
+        fastest, std::hypot(static_cast<double>(state[i].v[0]), static_cast<double>(state[i].v[1]),
+                            static_cast<double>(state[i].v[2])));
+  }
+  // two nodes approach by at most twice the fastest motion; more than one distance is not foreseen
+  const double margin = std::min(2 * fastest * frame_time, static_cast<double>(distance_));
+  Pairs pairs = PairsWithin(position, static_cast<double>(distance_) + margin);
+  std::erase_if(pairs, [&](const std::array<int, 2>& pair) {
+    return std::binary_search(never_.begin(), never_.end(), pair);
+  });
+  return pairs;
+}
+
+template <class Real>
+bool Contact<Real>::PairHits(const NodeStates<Real>& state, const std::array<int, 2>& pair,
+                             const Velocities& velocity) const {
+  const Vector d = X(state[pair[1]]) - X(state[pair[0]]);
+  const Real length = d.norm();
+  if (length >= distance_ || length < Real(1e-9)) return false;
+  return d.dot(velocity[pair[1]] - velocity[pair[0]]) < -Real(kApproach) * length;
+}
+
+// Number of impacts of each node.
+template <class Real>
+std::vector<int> Contact<Real>::CountHits(const NodeStates<Real>& state, const Pairs& pairs,
+                                          const Velocities& velocity) const {
+  std::vector<int> hits(nodes_, 0);
+  for (const std::array<int, 2>& pair : pairs) {
+    if (!PairHits(state, pair, velocity)) continue;
+    ++hits[pair[0]];
+    ++hits[pair[1]];
+  }
+  return hits;
+}
+
+// The impulse that gives a pair alone the relative velocity u' = Impact(u), u = v_b - v_a, divided
+// by the number of impacts of the busier of the two; the same on both sides, which keeps momentum:
+//   v_a -= m_b / (m_a + m_b) (u' - u) / hits,   v_b += m_a / (m_a + m_b) (u' - u) / hits
+template <class Real>
+void Contact<Real>::ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs,
+                               Velocities* velocity) const {
+  const Velocities before = *velocity;
+  const std::vector<int> hits = CountHits(state, pairs, before);
+  for (const auto& pair : pairs) {
+    if (!PairHits(state, pair, before)) continue;
+    const auto [a, b] = pair;
+    const Vector n = (X(state[b]) - X(state[a])).normalized();
+    const Vector u = before[b] - before[a];
+    const Vector change =
+        (Impact(u, n, laws_.object) - u) / static_cast<Real>(std::max(hits[a], hits[b]));
+    const Real fraction = mass_[a] / (mass_[a] + mass_[b]);
+    (*velocity)[a] -= (1 - fraction) * change;
+    (*velocity)[b] += fraction * change;
+  }
+}
+
+template <class Real>
+void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
+                                      const Velocities& velocity, Velocities* velocity_bar,
+                                      ContactGradient<Real>* gradient) const {
+  const Velocities after_bar = *velocity_bar;
+  const std::vector<int> hits = CountHits(state, pairs, velocity);
+  for (const auto& pair : pairs) {
+    if (!PairHits(state, pair, velocity)) continue;
+    const auto [a, b] = pair;
+    const Vector d = X(state[b]) - X(state[a]);
+    const Real length = d.norm();
+    const Vector n = d / length;
+    const Vector u = velocity[b] - velocity[a];
+    const Real share = 1 / static_cast<Real>(std::max(hits[a], hits[b]));
+    const Vector change = share * (Impact(u, n, laws_.object) - u);
+    const Real mass = mass_[a] + mass_[b];
+    const Real fraction = mass_[a] / mass;
+    // forward: velocity_a -= (1 - fraction) change, velocity_b += fraction change
+    const Vector change_bar = fraction * after_bar[b] - (1 - fraction) * after_bar[a];
+    // forward: fraction = m_a / (m_a + m_b)
+    const Real fraction_bar = change.dot(after_bar[a] + after_bar[b]);
+    gradient->mass[a] += fraction_bar * (1 - fraction) / mass;
+    gradient->mass[b] -= fraction_bar * fraction / mass;
+    // forward: change = share (Impact(u, n) - u)
+    Vector u_bar = -share * change_bar, n_bar = Vector::Zero();
+    ImpactAdjoint<Real>(u, n, laws_.object, share * change_bar, &u_bar, &n_bar,
+                        &gradient->laws.object);
+    (*velocity_bar)[b] += u_bar;
+    (*velocity_bar)[a] -= u_bar;
+    // forward: n = d / |d|
+    const Vector d_bar = (n_bar - n.dot(n_bar) * n) / length;
+    AddX(d_bar, &gradient->state[b]);
+    AddX<Real>(-d_bar, &gradient->state[a]);
+  }
+}
+
+template <class Real>
+typename Contact<Real>::Touch Contact<Real>::FindTouch(const Vector& x, const Vector& v,
+                                                       Real radius, std::size_t surface,
+                                                       const std::vector<Geom>& geoms,
+                                                       double elapsed, double h) const {
+  Touch touch;
+  Real gap;
+  touch.normal_x.setZero();
+  touch.surface_velocity_x.setZero();
+  touch.surface_velocity.setZero();
+  if (surface == 0) {
+    if (!has_ground_) return touch;
+    touch.normal = ground_normal_;
+    gap = ground_normal_.dot(x) - ground_offset_ - radius;
+  } else {
+    const Geom geom = Moved(geoms[surface - 1], elapsed);
+    const Eigen::Matrix<Real, 3, 3> rotation = geom.rotation.cast<Real>();
+    const Vector arm = x - geom.position.cast<Real>();
+    const Vector local = rotation.transpose() * arm;
+    const Vector half = geom.half_size.cast<Real>();
+    // offset from the nearest point of the box, zero along the axes within it
+    const Vector offset = local - local.cwiseMax(-half).cwiseMin(half);
+    const Real distance = offset.norm();
+    Vector normal;
+    if (distance > 0) {
+      normal = offset / distance;
+      Vector outside;
+      for (int j = 0; j < 3; ++j) outside[j] = offset[j] != 0 ? Real(1) : Real(0);
+      const Eigen::Matrix<Real, 3, 3> projector = outside.asDiagonal();
+      touch.normal_x =
+          rotation * (projector - normal * normal.transpose()) / distance * rotation.transpose();
+      gap = distance;
+    } else {  // inside the box: towards the nearest face
+      int axis = 0;
+      gap = (local.cwiseAbs() - half).maxCoeff(&axis);
+      normal = Vector::Unit(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
+    }
+    touch.normal = rotation * normal;
+    gap -= static_cast<Real>(geom.radius) + radius;
+    const Vector spin = geom.angular_velocity.cast<Real>();
+    touch.surface_velocity = geom.velocity.cast<Real>() + spin.cross(arm);
+    touch.surface_velocity_x = Cross(spin);
+  }
+  const Real approach = touch.normal.dot(v - touch.surface_velocity);
+  touch.hit = approach < -Real(kApproach) && gap + static_cast<Real>(h) * approach < 0;
+  return touch;
+}
+
+template <class Real>
+void Contact<Real>::Apply(const NodeStates<Real>& state, const Pairs& pairs,
+                          const std::vector<Geom>& geoms, double elapsed, double h,
+                          Velocities* velocity) const {
+  if (!pairs.empty()) ApplyPairs(state, pairs, velocity);
+  for (int i = 0; i < nodes_; ++i) {
+    Vector& v = (*velocity)[i];
+    for (std::size_t surface = 0; surface <= geoms.size(); ++surface) {
+      const Touch touch = FindTouch(X(state[i]), v, radius_[i], surface, geoms, elapsed, h);
+      if (!touch.hit) continue;
+      v = touch.surface_velocity +
+          Impact<Real>(v - touch.surface_velocity, touch.normal, laws_.surface);
+    }
+  }
+}
+
+template <class Real>
+void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
+                                 const std::vector<Geom>& geoms, double elapsed, double h,
+                                 const Velocities& velocity, Velocities* velocity_bar,
+                                 ContactGradient<Real>* gradient) const {
+  Velocities after_pairs = velocity;
+  if (!pairs.empty()) ApplyPairs(state, pairs, &after_pairs);
+  std::vector<std::pair<Touch, Vector>> touches;  // of one node, with the velocity before each
+  for (int i = 0; i < nodes_; ++i) {
+    touches.clear();
+    Vector v = after_pairs[i];
+    for (std::size_t surface = 0; surface <= geoms.size(); ++surface) {
+      const Touch touch = FindTouch(X(state[i]), v, radius_[i], surface, geoms, elapsed, h);
+      if (!touch.hit) continue;
+      touches.emplace_back(touch, v);
+      v = touch.surface_velocity +
+          Impact<Real>(v - touch.surface_velocity, touch.normal, laws_.surface);
+    }
+    Vector& v_bar = (*velocity_bar)[i];
+    for (auto it = touches.rbegin(); it != touches.rend(); ++it) {
+      const auto& [touch, before] = *it;
+      // forward: v' = s + Impact(v - s, n)
+      Vector u_bar = Vector::Zero(), n_bar = Vector::Zero();
+      ImpactAdjoint<Real>(before - touch.surface_velocity, touch.normal, laws_.surface, v_bar,
+                          &u_bar, &n_bar, &gradient->laws.surface);
+      const Vector surface_velocity_bar = v_bar - u_bar;
+      AddX<Real>(touch.normal_x.transpose() * n_bar +
+                     touch.surface_velocity_x.transpose() * surface_velocity_bar,
+                 &gradient->state[i]);
+      v_bar = u_bar;
+    }
+  }
+  if (!pairs.empty()) {
+    ApplyPairsAdjoint(state, pairs, velocity, velocity_bar, gradient);
+  }
+}
+
+template class Contact<float>;
+template class Contact<double>;
+
+}  // namespace physpring

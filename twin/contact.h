@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts of a twin's nodes with each other, with the ground and with moving geoms: where the
+// contact law (contact_law.h) acts, and with which normal. One call handles one sub-step, all
+// nodes, in this order: pairs of particles (all at once, as PhysTwin: Jacobi), then each node with
+// the ground and with the geoms one after the other.
+#ifndef PHYSPRING_TWIN_CONTACT_H_
+#define PHYSPRING_TWIN_CONTACT_H_
+
+#include <array>
+#include <vector>
+
+#include "twin/contact_law.h"
+#include "twin/environment.h"
+#include "twin/node_state.h"
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+template <class Real>
+struct ContactLaws {
+  ContactPair<Real> surface;  // ground and geoms
+  ContactPair<Real> object;   // between particles
+};
+
+// Derivatives that the contacts of a sub-step add to. `state`: with respect to the positions (the x
+// of each entry); `mass`: with respect to the nodes' masses.
+template <class Real>
+struct ContactGradient {
+  NodeState<Real>* state;
+  Real* mass;
+  ContactLaws<Real> laws;
+};
+
+template <class Real>
+class Contact {
+ public:
+  using Vector = Eigen::Matrix<Real, 3, 1>;
+  using Velocities = std::vector<Vector>;
+  using Pairs = std::vector<std::array<int, 2>>;
+
+  // `ground` and the system's contact_radius decide about the ground. Particles that are closer
+  // than the collision distance in the reference configuration, or joined by a spring, never
+  // collide.
+  Contact(const SpringMassSystem& system, const Environment& environment);
+
+  void SetParameters(const SpringMassSystem& system);
+
+  // Whether anything can collide when there are `geoms` geoms.
+  bool Active(std::size_t geoms) const { return has_ground_ || distance_ > 0 || geoms > 0; }
+
+  // Pairs of particles near enough to collide within the next frame (looked for once a frame).
+  Pairs FindPairs(const NodeStates<Real>& state, double frame_time) const;
+
+  // velocity <- velocity after all contacts of a sub-step of h seconds, at the positions of
+  // `state`. The geoms stand at their poses `elapsed` seconds after the start of the frame.
+  void Apply(const NodeStates<Real>& state, const Pairs& pairs, const std::vector<Geom>& geoms,
+             double elapsed, double h, Velocities* velocity) const;
+
+  // Adjoint: `velocity` before the contacts; velocity_bar: in d loss / d velocity after, out
+  // before.
+  void ApplyAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
+                    const std::vector<Geom>& geoms, double elapsed, double h,
+                    const Velocities& velocity, Velocities* velocity_bar,
+                    ContactGradient<Real>* gradient) const;
+
+ private:
+  // One impact of a node on a surface.
+  struct Touch {
+    Vector normal;
+    Vector surface_velocity;
+    Eigen::Matrix<Real, 3, 3> normal_x;  // d normal / d x
+    Eigen::Matrix<Real, 3, 3> surface_velocity_x;
+    bool hit = false;
+  };
+  // Surface 0 is the ground, the others are the geoms.
+  Touch FindTouch(const Vector& x, const Vector& v, Real radius, std::size_t surface,
+                  const std::vector<Geom>& geoms, double elapsed, double h) const;
+
+  void ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs, Velocities* velocity) const;
+  void ApplyPairsAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
+                         const Velocities& velocity, Velocities* velocity_bar,
+                         ContactGradient<Real>* gradient) const;
+  std::vector<int> CountHits(const NodeStates<Real>& state, const Pairs& pairs,
+                             const Velocities& velocity) const;
+  bool PairHits(const NodeStates<Real>& state, const std::array<int, 2>& pair,
+                const Velocities& velocity) const;
+
+  int nodes_;
+  bool has_ground_ = false;
+  Vector ground_normal_ = Vector::Zero();
+  Real ground_offset_ = 0;
+  Real distance_ = 0;  // below which particles collide, m
+  ContactLaws<Real> laws_;
+  std::vector<Real> radius_, mass_;
+  Pairs never_;  // sorted pairs (i < j) that never collide
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_CONTACT_H_

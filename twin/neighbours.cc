@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/neighbours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nanoflann.hpp>
+#include <utility>
+
+namespace physpring {
+namespace {
+
+// The view of a point set that nanoflann asks for.
+struct PointCloud {
+  Points points;
+  std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points.cols()); }
+  double kdtree_get_pt(std::size_t index, std::size_t dimension) const {
+    return points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(index));
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
+                                                  PointCloud, 3, int>;
+
+// Nearest first; equally near ones by index.
+void Sort(std::vector<Neighbour>* neighbours) {
+  std::sort(neighbours->begin(), neighbours->end(), [](const Neighbour& a, const Neighbour& b) {
+    return std::pair(a.distance, a.index) < std::pair(b.distance, b.index);
+  });
+}
+
+}  // namespace
+
+struct NeighbourSearch::Tree {
+  PointCloud cloud;
+  Index index;
+  explicit Tree(const Points& points)
+      : cloud{points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
+    index.buildIndex();
+  }
+};
+
+NeighbourSearch::NeighbourSearch(const Points& points) : tree_(std::make_unique<Tree>(points)) {}
+NeighbourSearch::~NeighbourSearch() = default;
+
+std::vector<Neighbour> NeighbourSearch::Nearest(const Eigen::Vector3d& query, int count) const {
+  count = std::min(count, static_cast<int>(tree_->cloud.points.cols()));
+  if (count <= 0) return {};
+  std::vector<int> index(count);
+  std::vector<double> squared(count);
+  tree_->index.knnSearch(query.data(), static_cast<std::size_t>(count), index.data(),
+                         squared.data());
+  // take all that are as far as the farthest, so that ties do not depend on the tree
+  const double reach = std::sqrt(squared.back());
+  std::vector<Neighbour> found = Within(query, reach * (1 + 1e-9) + 1e-12);
+  found.resize(std::min(found.size(), static_cast<std::size_t>(count)));
+  return found;
+}
+
+std::vector<Neighbour> NeighbourSearch::Within(const Eigen::Vector3d& query, double radius) const {
+  std::vector<std::pair<int, double>> found;
+  tree_->index.radiusSearch(query.data(), radius * radius, found, nanoflann::SearchParams());
+  std::vector<Neighbour> neighbours;
+  for (const auto& [index, squared] : found) neighbours.push_back({index, std::sqrt(squared)});
+  Sort(&neighbours);
+  return neighbours;
+}
+
+std::vector<std::array<int, 2>> PairsWithin(const Points& points, double radius) {
+  std::vector<std::array<int, 2>> pairs;
+  if (points.cols() == 0) return pairs;
+  const NeighbourSearch search(points);
+  for (int i = 0; i < points.cols(); ++i) {
+    for (const Neighbour& neighbour : search.Within(points.col(i), radius)) {
+      if (neighbour.index > i) pairs.push_back({i, neighbour.index});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace physpring

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording: measured 3-D points of one deformable object and of the grasps that move it, at a
+// fixed frame rate. T frames, N points, M interior particles, C controllers. SI units, z up.
+#ifndef PHYSPRING_TWIN_RECORDING_H_
+#define PHYSPRING_TWIN_RECORDING_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/points.h"
+
+namespace physpring {
+
+struct Recording {
+  std::string name;  // file name without folder and extension
+  std::string hash;  // of the file's content, 16 hex digits; empty if not read from a file
+
+  std::vector<Points> points;       // T frames of 3 x N, m; a column of NaN = not seen
+  std::vector<Points> controllers;  // T frames of 3 x C, m; C may be 0
+  double fps = 0;                   // frames per second, > 0
+
+  double mass = 0.1;                      // of the object, kg
+  Eigen::Vector3d gravity{0, 0, -9.81};   // m/s^2
+  std::optional<Eigen::Vector4d> ground;  // plane (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1
+
+  Points interior;              // 3 x M, m: unobserved particles in frame 0; M may be 0
+  Points rest;                  // 3 x (N+M+C), m: stress-free positions; default: frame 0
+  bool rest_given = false;      // false: `rest` is frame 0
+  Points velocity;              // 3 x (N+M), m/s: at frame 0; default: 0
+  Eigen::VectorXd order;        // (N+M+C): arc length along a rod, m; empty if not a rod
+  std::vector<Points> surface;  // T frames of 3 x S, m, unlabelled surface points; may be empty
+  std::vector<Points> track;    // T frames of 3 x K, m, key points; empty: `points` are tracked
+
+  int train_frames = 0;  // frames before it are for fitting, the rest is the future to predict
+
+  // What the reader had to assume, one line each (mass not declared, points placed ...).
+  std::vector<std::string> warnings;
+
+  int frame_count() const { return static_cast<int>(points.size()); }
+  int point_count() const { return points.empty() ? 0 : static_cast<int>(points[0].cols()); }
+  int interior_count() const { return static_cast<int>(interior.cols()); }
+  int controller_count() const {
+    return controllers.empty() ? 0 : static_cast<int>(controllers[0].cols());
+  }
+  int particle_count() const { return point_count() + interior_count(); }
+
+  // Positions of points, interior particles and controllers in frame 0: 3 x (N+M+C), finite.
+  // Points not seen in frame 0 were placed by the reader from their neighbours (see warnings).
+  Points start;
+};
+
+// Reads NAME.npz. Throws Error naming file, array and expectation when anything is malformed:
+// unreadable or truncated file, missing array, wrong shape or type, NaN where none may be.
+// Arrays that the format does not define are an error, too.
+Recording ReadRecording(const std::string& path);
+
+// Writes `recording` to `path` atomically (temporary file, fsync, rename), float32, deflated.
+// ReadRecording gives the same recording back up to float32.
+void WriteRecording(const Recording& recording, const std::string& path);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_RECORDING_H_

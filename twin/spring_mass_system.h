@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// One level of a twin: an explicit spring-mass system (design: physics).
+//
+// Free nodes come first, kinematic controllers after them. Spring e = (a, b) pulls a towards b with
+//   F = k (|d| - L) + c ((v_b - v_a) . n),   d = x_b - x_a,   n = d / |d|.
+#ifndef PHYSPRING_TWIN_SPRING_MASS_SYSTEM_H_
+#define PHYSPRING_TWIN_SPRING_MASS_SYSTEM_H_
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "twin/points.h"
+
+namespace physpring {
+
+// Coefficients of the impulse contact law (see contact_law.h).
+struct ContactCoefficients {
+  double restitution = 0.5;         // e in [0, 1], against ground and geoms
+  double friction = 0.3;            // Coulomb mu in [0, 2], against ground and geoms
+  double object_restitution = 0.7;  // e between particles
+  double object_friction = 0.3;     // mu between particles
+  double collision_distance = 0;    // m, between particles; 0 = particles do not collide
+};
+
+struct SpringMassSystem {
+  Points position;       // 3 x (nodes + controllers), m: reference configuration
+  int controllers = 0;   // the last columns of `position`
+  Eigen::VectorXd mass;  // (nodes), kg, > 0
+
+  std::vector<std::array<int, 2>> springs;  // (a, b), columns of `position`
+  Eigen::VectorXd stiffness;                // (springs), N/m, >= 0
+  Eigen::VectorXd rest_length;              // (springs), m, > 0
+  Eigen::VectorXd dashpot;                  // (springs), N s/m, >= 0
+  double drag = 0;                          // 1/s, >= 0: v <- v exp(-h drag)
+
+  ContactCoefficients contact;
+  Eigen::VectorXd contact_radius;  // (nodes), m: distance from a surface at which a node touches it
+
+  int node_count() const { return static_cast<int>(position.cols()) - controllers; }
+  int spring_count() const { return static_cast<int>(springs.size()); }
+
+  // Throws Error, one line that begins with `where`, unless all shapes agree, all numbers are
+  // finite and in range, and no spring joins a node to itself, a pair twice, or two controllers.
+  void Validate(const std::string& where) const;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_SPRING_MASS_SYSTEM_H_

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which nodes are joined by springs.
+//
+// Free nodes: PhysTwin's hybrid search (the nearest max_neighbours within a radius), which with an
+// infinite radius is k nearest neighbours; for rods, the nearest along the arc length. Controllers
+// are joined to their nearest free nodes in the same way, never to each other.
+#ifndef PHYSPRING_TWIN_TOPOLOGY_H_
+#define PHYSPRING_TWIN_TOPOLOGY_H_
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "twin/points.h"
+
+namespace physpring {
+
+struct TopologyOptions {
+  double radius = std::numeric_limits<double>::infinity();  // m
+  int max_neighbours = 12;                                  // of a node, itself not counted
+  double controller_radius = std::numeric_limits<double>::infinity();  // m
+  int controller_max_neighbours = 12;                                  // of a controller
+};
+
+// Springs (a, b), a < b, sorted. `position` (3 x (nodes + controllers), m, finite) holds the
+// controllers last. With `order` (arc length of nodes and controllers, m; may be empty) a node's
+// neighbours are the max_neighbours / 2 next ones on either side, and distances are taken along the
+// rod. Groups of nodes that the search leaves apart are joined where they are nearest.
+// Throws Error, beginning with `where`, if there is nothing to join, if two nodes coincide, or if
+// two groups are so far apart that they cannot be one object (more than 5 times the greatest
+// distance of a node to its nearest neighbour).
+std::vector<std::array<int, 2>> BuildSprings(const Points& position, int controllers,
+                                             const Eigen::VectorXd& order,
+                                             const TopologyOptions& options,
+                                             const std::string& where);
+
+// Distances (springs), m, in `position`, or along the rod where `order` is given.
+Eigen::VectorXd SpringLengths(const std::vector<std::array<int, 2>>& springs,
+                              const Points& position, const Eigen::VectorXd& order);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_TOPOLOGY_H_

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// A twin: the learned spring-mass systems of one object, from dense (level 0) to coarse, with all
+// that is needed to use, judge, export and go on training them.
+#ifndef PHYSPRING_TWIN_TWIN_H_
+#define PHYSPRING_TWIN_TWIN_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "twin/npz.h"
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+// A recording that a twin was trained on.
+struct TrainedOn {
+  std::string name;
+  std::string hash;      // Recording::hash
+  int train_frames = 0;  // frames before it were used for fitting
+};
+
+struct TwinLevel {
+  SpringMassSystem system;
+  std::vector<int> assignment;  // node of the level below -> node of this level; empty at level 0
+  int substeps_per_second = 0;  // of the sub-step it was trained with, per second of time
+};
+
+struct Twin {
+  std::string name;
+  std::vector<TwinLevel> levels;
+
+  // What the columns of level 0 are: points, interior particles (as in the recording), controllers.
+  int points = 0;
+  int interior = 0;
+  Eigen::VectorXd order;  // arc length of level 0's nodes and controllers, m; empty if not a rod
+  bool controller_velocity = true;  // dashpots feel the controllers' velocity (false: PhysTwin)
+  double fps = 0;
+  Eigen::Vector3d gravity{0, 0, -9.81};
+
+  std::vector<TrainedOn> trained_on;
+  std::string options_json = "{}";  // the options it was trained with
+  std::uint64_t seed = 0;
+
+  // Optimiser state, counters and the like, under the names their owner chose: "train/NAME".
+  std::map<std::string, NpzArray> training_state;
+};
+
+// Reads NAME.twin.npz; throws Error naming file, array and expectation.
+Twin ReadTwin(const std::string& path);
+
+// Writes atomically: the file at `path` is the old one or the new one, whatever happens.
+void WriteTwin(const Twin& twin, const std::string& path);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_TWIN_H_
