@@ -25,6 +25,19 @@ struct PointCloud {
 using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
                                                   PointCloud, 3, int>;
 
+// What nanoflann asks of a result set; its own one has another type in each of its versions.
+struct WithinRadius {
+  double radius_squared;
+  std::vector<Neighbour>* found;
+  std::size_t size() const { return found->size(); }
+  bool full() const { return true; }
+  double worstDist() const { return radius_squared; }
+  bool addPoint(double distance_squared, int index) const {
+    if (distance_squared < radius_squared) found->push_back({index, std::sqrt(distance_squared)});
+    return true;
+  }
+};
+
 // Nearest first; equally near ones by index.
 void Sort(std::vector<Neighbour>* neighbours) {
   std::sort(neighbours->begin(), neighbours->end(), [](const Neighbour& a, const Neighbour& b) {
@@ -61,12 +74,11 @@ std::vector<Neighbour> NeighbourSearch::Nearest(const Eigen::Vector3d& query, in
 }
 
 std::vector<Neighbour> NeighbourSearch::Within(const Eigen::Vector3d& query, double radius) const {
-  std::vector<std::pair<int, double>> found;
-  tree_->index.radiusSearch(query.data(), radius * radius, found, nanoflann::SearchParams());
-  std::vector<Neighbour> neighbours;
-  for (const auto& [index, squared] : found) neighbours.push_back({index, std::sqrt(squared)});
-  Sort(&neighbours);
-  return neighbours;
+  std::vector<Neighbour> found;
+  WithinRadius result{radius * radius, &found};
+  tree_->index.radiusSearchCustomCallback(query.data(), result);
+  Sort(&found);
+  return found;
 }
 
 std::vector<std::array<int, 2>> PairsWithin(const Points& points, double radius) {
