@@ -55,8 +55,9 @@ struct Recording {
 // Arrays that the format does not define are an error, too.
 Recording ReadRecording(const std::string& path);
 
-// Writes `recording` to `path` atomically (temporary file, fsync, rename), float32, deflated.
-// ReadRecording gives the same recording back up to float32.
+// Writes `recording` to `path` atomically (temporary file, fsync, rename), deflated; positions and
+// velocities in float32, so that ReadRecording gives the same recording back up to float32. Throws
+// Error for a recording that ReadRecording would refuse, and then writes nothing.
 void WriteRecording(const Recording& recording, const std::string& path);
 
 }  // namespace physpring

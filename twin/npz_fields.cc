@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/npz_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "twin/error.h"
+#include "twin/npy.h"
+
+namespace physpring {
+namespace {
+
+bool IsNumber(const std::string& extent) {
+  return std::all_of(extent.begin(), extent.end(), [](unsigned char c) { return std::isdigit(c); });
+}
+
+// "(T, N, 3) with T = 120", naming the symbols whose size is known.
+std::string FormatExtents(const Extents& shape, const std::map<std::string, std::size_t>& known) {
+  std::string sizes;
+  for (const std::string& extent : shape) {
+    const auto size = known.find(extent);
+    if (size == known.end()) continue;
+    sizes += fmt::format("{}{} = {}", sizes.empty() ? " with " : ", ", extent, size->second);
+  }
+  return fmt::format("({}{}){}", fmt::join(shape, ", "), shape.size() == 1 ? "," : "", sizes);
+}
+
+// "[3, 0, 2]": the place of a flat index in C order.
+std::string FormatIndex(std::size_t index, const std::vector<std::size_t>& shape) {
+  std::vector<std::size_t> place(shape.size());
+  for (std::size_t i = shape.size(); i-- > 0;) {
+    place[i] = index % shape[i];
+    index /= shape[i];
+  }
+  return fmt::format("[{}]", fmt::join(place, ", "));
+}
+
+std::vector<Points> SplitFrames(const std::vector<double>& values, std::size_t frames,
+                                std::size_t points) {
+  std::vector<Points> split;
+  split.reserve(frames);
+  for (std::size_t t = 0; t < frames; ++t) {
+    split.emplace_back(Eigen::Map<const Points>(values.data() + t * points * 3, 3,
+                                                static_cast<Eigen::Index>(points)));
+  }
+  return split;
+}
+
+}  // namespace
+
+double NpzFields::Scalar(const std::string& name) { return FiniteNumbers(name, {})[0]; }
+
+Eigen::VectorXd NpzFields::Vector(const std::string& name, const std::string& size) {
+  const std::vector<double> values = FiniteNumbers(name, {size});
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Points NpzFields::Positions(const std::string& name, const std::string& size) {
+  const std::vector<double> values = FiniteNumbers(name, {size, "3"});
+  return Eigen::Map<const Points>(values.data(), 3, static_cast<Eigen::Index>(values.size() / 3));
+}
+
+std::vector<Points> NpzFields::FramesWithUnseen(const std::string& name, const std::string& size) {
+  const std::vector<double> values = Numbers(name, {"T", size, "3"});
+  const std::vector<std::size_t>& shape = Get(name).shape;
+  for (std::size_t i = 0; i < values.size(); i += 3) {
+    const auto is_nan = [](double value) { return std::isnan(value); };
+    const auto count = std::count_if(&values[i], &values[i] + 3, is_nan);
+    if (count == 3) continue;
+    if (count > 0) {
+      Fail(name, fmt::format("holds a point that is partly NaN at {}, expected all three "
+                             "coordinates, or three NaN for a point not seen",
+                             FormatIndex(i / 3, {shape[0], shape[1]})));
+    }
+    for (std::size_t k = i; k < i + 3; ++k) {
+      if (!std::isinf(values[k])) continue;
+      Fail(name, fmt::format("holds {} at {}, expected finite numbers, or NaN for a point not seen",
+                             values[k], FormatIndex(k, shape)));
+    }
+  }
+  return SplitFrames(values, shape[0], shape[1]);
+}
+
+std::vector<Points> NpzFields::Frames(const std::string& name, const std::string& size) {
+  const std::vector<double> values = FiniteNumbers(name, {"T", size, "3"});
+  const std::vector<std::size_t>& shape = Get(name).shape;
+  return SplitFrames(values, shape[0], shape[1]);
+}
+
+std::vector<int> NpzFields::Ints(const std::string& name, const Extents& shape) {
+  try {
+    return GetOfShape(name, shape).ToInts();
+  } catch (const Error& error) {
+    Fail(name, error.what());
+  }
+}
+
+std::string NpzFields::Text(const std::string& name) const {
+  try {
+    return Get(name).ToText();
+  } catch (const Error& error) {
+    Fail(name, error.what());
+  }
+}
+
+void NpzFields::Fail(const std::string& name, const std::string& what) const {
+  Fail(fmt::format("array '{}' {}", name, what));
+}
+
+void NpzFields::Fail(const std::string& what) const {
+  throw Error(fmt::format("{}: {}", path_, what));
+}
+
+const NpzArray& NpzFields::Get(const std::string& name) const {
+  const auto found = arrays_.find(name);
+  if (found == arrays_.end()) Fail(name, "is missing");
+  return found->second;
+}
+
+const NpzArray& NpzFields::GetOfShape(const std::string& name, const Extents& shape) {
+  const NpzArray& array = Get(name);
+  const std::map<std::string, std::size_t> known = extents_;
+  bool agrees = array.shape.size() == shape.size();
+  for (std::size_t i = 0; agrees && i < shape.size(); ++i) {
+    const std::size_t expected = IsNumber(shape[i])
+                                     ? std::stoul(shape[i])
+                                     : extents_.emplace(shape[i], array.shape[i]).first->second;
+    agrees = array.shape[i] == expected;
+  }
+  if (!agrees) {
+    Fail(name, fmt::format("has the shape {}, expected {}", FormatShape(array.shape),
+                           FormatExtents(shape, known)));
+  }
+  return array;
+}
+
+std::vector<double> NpzFields::Numbers(const std::string& name, const Extents& shape) {
+  const NpzArray& array = GetOfShape(name, shape);
+  if (array.type == "|b1") Fail(name, "has the type '|b1', expected numbers");
+  return array.ToDoubles();
+}
+
+std::vector<double> NpzFields::FiniteNumbers(const std::string& name, const Extents& shape) {
+  std::vector<double> values = Numbers(name, shape);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) continue;
+    const std::string place = shape.empty() ? "" : " at " + FormatIndex(i, Get(name).shape);
+    Fail(name, fmt::format("holds {}{}, expected finite numbers", values[i], place));
+  }
+  return values;
+}
+
+}  // namespace physpring

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arrays of one file by name, with their shapes and values checked. Every message is one line
+// that names file, array, what it holds and what is expected.
+#ifndef PHYSPRING_TWIN_NPZ_FIELDS_H_
+#define PHYSPRING_TWIN_NPZ_FIELDS_H_
+
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "twin/npz.h"
+#include "twin/points.h"
+
+namespace physpring {
+
+// Extents of a shape: numbers ("3") or symbols ("T"). A symbol stands for any size where it is
+// first met, and for that size ever after.
+using Extents = std::vector<std::string>;
+
+class NpzFields {
+ public:
+  // `arrays` must live as long as this object; messages begin with `path`.
+  NpzFields(const Npz& arrays, std::string path) : arrays_(arrays), path_(std::move(path)) {}
+
+  bool Has(const std::string& name) const { return arrays_.contains(name); }
+
+  // Fixes the size of a symbol, or tells it.
+  void SetExtent(const std::string& symbol, std::size_t size) { extents_[symbol] = size; }
+  std::size_t Extent(const std::string& symbol) const { return extents_.at(symbol); }
+
+  // Finite numbers: a scalar, one dimension, and (size, 3) as 3 x size.
+  double Scalar(const std::string& name);
+  Eigen::VectorXd Vector(const std::string& name, const std::string& size);
+  Points Positions(const std::string& name, const std::string& size);
+
+  // (T, size, 3) as T frames of 3 x size. Points may be NaN in all three coordinates, not in some.
+  std::vector<Points> FramesWithUnseen(const std::string& name, const std::string& size);
+  // The same, all finite.
+  std::vector<Points> Frames(const std::string& name, const std::string& size);
+
+  // Whole numbers, C order.
+  std::vector<int> Ints(const std::string& name, const Extents& shape);
+
+  // The text of an array of bytes.
+  std::string Text(const std::string& name) const;
+
+  // Throws Error: "PATH: array 'NAME' WHAT", "PATH: WHAT".
+  [[noreturn]] void Fail(const std::string& name, const std::string& what) const;
+  [[noreturn]] void Fail(const std::string& what) const;
+
+ private:
+  const NpzArray& Get(const std::string& name) const;
+  const NpzArray& GetOfShape(const std::string& name, const Extents& shape);
+  std::vector<double> Numbers(const std::string& name, const Extents& shape);
+  std::vector<double> FiniteNumbers(const std::string& name, const Extents& shape);
+
+  const Npz& arrays_;
+  std::string path_;
+  std::map<std::string, std::size_t> extents_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_NPZ_FIELDS_H_

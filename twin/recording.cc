@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <numeric>
+#include <string_view>
+
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+#include "twin/npz.h"
+#include "twin/npz_fields.h"
+#include "twin/quote.h"
+#include "twin/unseen_points.h"
+
+namespace physpring {
+namespace {
+
+constexpr std::array<std::string_view, 13> kArrays{
+    "points", "controllers", "fps",   "mass",    "gravity", "ground",      "interior",
+    "rest",   "velocity",    "order", "surface", "track",   "train_frames"};
+constexpr double kSmallestDistance = 1e-7;  // m, between two particles
+constexpr double kAssumedMass = 0.1;        // kg
+
+void ExpectKnownArrays(const Npz& arrays, const NpzFields& fields) {
+  for (const auto& [name, array] : arrays) {
+    if (std::find(kArrays.begin(), kArrays.end(), name) != kArrays.end()) continue;
+    fields.Fail(fmt::format("array {} is not part of a recording, expected only {}", Quote(name),
+                            fmt::join(kArrays, ", ")));
+  }
+}
+
+std::vector<Points> ReadFrames(NpzFields& fields, const std::string& name,
+                               const std::string& size) {
+  std::vector<Points> frames = fields.FramesWithUnseen(name, size);
+  if (fields.Extent(size) < 1) fields.Fail(name, "has no points, expected at least one");
+  return frames;
+}
+
+void ReadMeasured(NpzFields& fields, Recording& recording) {
+  recording.points = ReadFrames(fields, "points", "N");
+  if (fields.Extent("T") < 2) fields.Fail("points", "has fewer than 2 frames");
+  for (Eigen::Index i = 0; i < recording.point_count(); ++i) {
+    const auto sees = [i](const Points& frame) { return frame.col(i).allFinite(); };
+    if (std::none_of(recording.points.begin(), recording.points.end(), sees)) {
+      fields.Fail("points", fmt::format("has point {}, which is not seen in any frame", i));
+    }
+  }
+  recording.controllers = fields.Frames("controllers", "C");
+  if (fields.Has("surface")) recording.surface = ReadFrames(fields, "surface", "S");
+  if (fields.Has("track")) recording.track = ReadFrames(fields, "track", "K");
+}
+
+double ReadPositive(NpzFields& fields, const std::string& name) {
+  const double value = fields.Scalar(name);
+  if (value <= 0) fields.Fail(name, fmt::format("holds {}, expected more than 0", value));
+  return value;
+}
+
+// a x + b y + c z = d, divided by |(a, b, c)|
+Eigen::Vector4d ReadGround(NpzFields& fields) {
+  const Eigen::Vector4d plane = fields.Vector("ground", "4");
+  const double length = plane.head<3>().stableNorm();
+  const Eigen::Vector4d unit = plane / length;
+  if (length > 0 && unit.allFinite()) return unit;
+  fields.Fail("ground", fmt::format("holds the normal ({}, {}, {}), expected one that is not zero",
+                                    plane[0], plane[1], plane[2]));
+}
+
+void ReadConstants(NpzFields& fields, const std::string& path, Recording& recording) {
+  recording.fps = ReadPositive(fields, "fps");
+  if (fields.Has("mass")) {
+    recording.mass = ReadPositive(fields, "mass");
+  } else {
+    recording.mass = kAssumedMass;
+    recording.warnings.push_back(
+        fmt::format("{}: no 'mass' is given, {} kg is assumed", path, kAssumedMass));
+  }
+  if (fields.Has("gravity")) recording.gravity = fields.Vector("gravity", "3");
+  if (fields.Has("ground")) recording.ground = ReadGround(fields);
+
+  const int frames = recording.frame_count();
+  recording.train_frames = std::max(2, frames * 7 / 10);
+  if (!fields.Has("train_frames")) return;
+  recording.train_frames = fields.Ints("train_frames", {})[0];
+  if (recording.train_frames < 2 || recording.train_frames > frames) {
+    fields.Fail("train_frames", fmt::format("holds {}, expected 2 to {}, the number of frames",
+                                            recording.train_frames, frames));
+  }
+}
+
+void ReadParticles(NpzFields& fields, Recording& recording) {
+  recording.interior.resize(3, 0);
+  if (fields.Has("interior")) recording.interior = fields.Positions("interior", "M");
+  const auto particles = static_cast<std::size_t>(recording.particle_count());
+  fields.SetExtent("N+M", particles);
+  fields.SetExtent("N+M+C", particles + fields.Extent("C"));
+
+  recording.velocity = Points::Zero(3, recording.particle_count());
+  if (fields.Has("velocity")) recording.velocity = fields.Positions("velocity", "N+M");
+  if (fields.Has("order")) recording.order = fields.Vector("order", "N+M+C");
+  recording.rest_given = fields.Has("rest");
+  if (recording.rest_given) recording.rest = fields.Positions("rest", "N+M+C");
+}
+
+// "point 3", "interior particle 0", "controller 1"
+std::string NameOfColumn(const Recording& recording, Eigen::Index column) {
+  if (column < recording.point_count()) return fmt::format("point {}", column);
+  column -= recording.point_count();
+  if (column < recording.interior_count()) return fmt::format("interior particle {}", column);
+  return fmt::format("controller {}", column - recording.interior_count());
+}
+
+// Fails if two columns are closer than kSmallestDistance: the rest length between them would be
+// zero. Only columns that are as close along the first coordinate are compared.
+void ExpectDistinct(const NpzFields& fields, const Recording& recording, const std::string& array,
+                    const Eigen::MatrixXd& positions) {
+  std::vector<Eigen::Index> columns(static_cast<std::size_t>(positions.cols()));
+  std::iota(columns.begin(), columns.end(), 0);
+  std::sort(columns.begin(), columns.end(),
+            [&](Eigen::Index a, Eigen::Index b) { return positions(0, a) < positions(0, b); });
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    for (std::size_t j = i + 1; j < columns.size(); ++j) {
+      const auto difference = positions.col(columns[j]) - positions.col(columns[i]);
+      if (difference[0] >= kSmallestDistance) break;
+      if (difference.norm() >= kSmallestDistance) continue;
+      const auto [first, second] = std::minmax(columns[i], columns[j]);
+      fields.Fail(array, fmt::format("has {} and {} at the same place, expected {} m or more",
+                                     NameOfColumn(recording, first),
+                                     NameOfColumn(recording, second), kSmallestDistance));
+    }
+  }
+}
+
+std::string WarnOfPlaced(const std::string& path, const std::vector<int>& placed) {
+  constexpr std::size_t kShown = 5;
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(placed.size(), kShown));
+  return fmt::format("{}: {} points are not seen in frame 0 and were placed from neighbours: {}{}",
+                     path, placed.size(), fmt::join(placed.begin(), placed.begin() + shown, ", "),
+                     placed.size() > kShown ? ", ..." : "");
+}
+
+void SetStart(const NpzFields& fields, const std::string& path, Recording& recording) {
+  recording.start.resize(3, recording.particle_count() + recording.controller_count());
+  recording.start << recording.points[0], recording.interior, recording.controllers[0];
+  const std::vector<int> placed = PlaceUnseenPoints(recording);
+  if (!placed.empty()) recording.warnings.push_back(WarnOfPlaced(path, placed));
+
+  ExpectDistinct(fields, recording, "points", recording.start);
+  if (recording.rest_given) ExpectDistinct(fields, recording, "rest", recording.rest);
+  if (!recording.rest_given) recording.rest = recording.start;
+  if (recording.order.size() > 0) {
+    ExpectDistinct(fields, recording, "order", recording.order.transpose());
+  }
+}
+
+Recording ParseRecording(const Npz& arrays, const std::string& path) {
+  NpzFields fields(arrays, path);
+  ExpectKnownArrays(arrays, fields);
+  Recording recording;
+  recording.name = std::filesystem::path(path).stem().string();
+  ReadMeasured(fields, recording);
+  ReadConstants(fields, path, recording);
+  ReadParticles(fields, recording);
+  SetStart(fields, path, recording);
+  return recording;
+}
+
+std::size_t Size(Eigen::Index count) { return static_cast<std::size_t>(count); }
+
+// (T, columns, 3)
+NpzArray StoreFrames(const std::vector<Points>& frames) {
+  const Eigen::Index columns = frames.empty() ? 0 : frames[0].cols();
+  std::vector<double> values;
+  values.reserve(frames.size() * Size(3 * columns));
+  for (const Points& frame : frames) {
+    if (frame.cols() != columns) throw Error("frames differ in their number of points");
+    values.insert(values.end(), frame.data(), frame.data() + frame.size());
+  }
+  return NpzArray::Floats({frames.size(), Size(columns), 3}, values.data());
+}
+
+// (columns, 3)
+NpzArray StorePositions(const Points& positions) {
+  return NpzArray::Floats({Size(positions.cols()), 3}, positions.data());
+}
+
+Npz StoreRecording(const Recording& recording) {
+  Npz arrays;
+  arrays["points"] = StoreFrames(recording.points);
+  const std::vector<Points> no_controllers(recording.points.size(), Points(3, 0));
+  arrays["controllers"] =
+      StoreFrames(recording.controllers.empty() ? no_controllers : recording.controllers);
+  arrays["fps"] = NpzArray::Doubles({}, &recording.fps);
+  arrays["mass"] = NpzArray::Doubles({}, &recording.mass);
+  arrays["gravity"] = NpzArray::Doubles({3}, recording.gravity.data());
+  arrays["train_frames"] = NpzArray::Ints({}, &recording.train_frames);
+  if (recording.ground) arrays["ground"] = NpzArray::Doubles({4}, recording.ground->data());
+  if (recording.interior.cols() > 0) arrays["interior"] = StorePositions(recording.interior);
+  if (recording.rest_given) arrays["rest"] = StorePositions(recording.rest);
+  if (!recording.velocity.isZero(0)) arrays["velocity"] = StorePositions(recording.velocity);
+  if (recording.order.size() > 0) {
+    arrays["order"] = NpzArray::Doubles({Size(recording.order.size())}, recording.order.data());
+  }
+  if (!recording.surface.empty()) arrays["surface"] = StoreFrames(recording.surface);
+  if (!recording.track.empty()) arrays["track"] = StoreFrames(recording.track);
+  return arrays;
+}
+
+}  // namespace
+
+Recording ReadRecording(const std::string& path) {
+  const std::string bytes = ReadFile(path);
+  Recording recording = ParseRecording(ParseNpz(bytes, path), path);
+  recording.hash = HashBytes(bytes);
+  return recording;
+}
+
+void WriteRecording(const Recording& recording, const std::string& path) {
+  Npz arrays;
+  try {
+    arrays = StoreRecording(recording);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
+  ParseRecording(arrays, path);  // what the reader would refuse is not written
+  WriteNpz(arrays, path);
+}
+
+}  // namespace physpring

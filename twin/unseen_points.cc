@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/unseen_points.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
+
+namespace physpring {
+namespace {
+
+constexpr std::size_t kNeighbours = 8;
+
+bool IsSeen(const Points& points, Eigen::Index i) { return points.col(i).allFinite(); }
+
+// All columns (points, interior, controllers) in `frame`; interior particles are not seen there.
+Points ShapeInFrame(const Recording& recording, std::size_t frame) {
+  Points shape =
+      Points::Constant(3, recording.start.cols(), std::numeric_limits<double>::quiet_NaN());
+  shape.leftCols(recording.point_count()) = recording.points[frame];
+  shape.rightCols(recording.controller_count()) = recording.controllers[frame];
+  return shape;
+}
+
+// The columns nearest to column i of `shape` that are known in `shape` and in `start`.
+std::vector<Eigen::Index> NearestKnown(const Points& shape, const Points& start, Eigen::Index i) {
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index j = 0; j < start.cols(); ++j) {
+    if (IsSeen(shape, j) && IsSeen(start, j)) known.push_back(j);
+  }
+  const auto distance_squared = [&](Eigen::Index j) {
+    return (shape.col(j) - shape.col(i)).squaredNorm();
+  };
+  const auto count = static_cast<std::ptrdiff_t>(std::min(kNeighbours, known.size()));
+  std::partial_sort(
+      known.begin(), known.begin() + count, known.end(),
+      [&](Eigen::Index a, Eigen::Index b) { return distance_squared(a) < distance_squared(b); });
+  known.resize(static_cast<std::size_t>(count));
+  return known;
+}
+
+// The rotation that takes the columns of `from` (about their mean) nearest to those of `to`. What
+// they leave open (the twist about a straight line, all of it for one point) is not turned: the
+// small multiple of the identity decides there, and changes a determined angle by about 1 %.
+Eigen::Matrix3d FitRotation(const Points& from, const Points& to) {
+  const Eigen::Matrix3d covariance =
+      to * from.transpose() + 0.01 * from.squaredNorm() * Eigen::Matrix3d::Identity();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+  return u * svd.matrixV().transpose();
+}
+
+Eigen::Vector3d MoveWithNeighbours(const Points& shape, const Points& start, Eigen::Index i) {
+  const std::vector<Eigen::Index> neighbours = NearestKnown(shape, start, i);
+  if (neighbours.empty()) return shape.col(i);
+  const Points from = shape(Eigen::all, neighbours);
+  const Points to = start(Eigen::all, neighbours);
+  const Eigen::Vector3d from_mean = from.rowwise().mean();
+  const Eigen::Vector3d to_mean = to.rowwise().mean();
+  const Eigen::Matrix3d rotation = FitRotation(from.colwise() - from_mean, to.colwise() - to_mean);
+  return to_mean + rotation * (shape.col(i) - from_mean);
+}
+
+std::size_t FirstFrameThatSees(const Recording& recording, Eigen::Index point) {
+  std::size_t frame = 0;
+  while (!IsSeen(recording.points.at(frame), point)) ++frame;
+  return frame;
+}
+
+}  // namespace
+
+std::vector<int> PlaceUnseenPoints(Recording& recording) {
+  const Points known = recording.start;  // placed points are no neighbours of the next ones
+  std::vector<int> placed;
+  for (int i = 0; i < recording.point_count(); ++i) {
+    if (IsSeen(known, i)) continue;
+    const Points shape = recording.rest_given
+                             ? recording.rest
+                             : ShapeInFrame(recording, FirstFrameThatSees(recording, i));
+    recording.start.col(i) = MoveWithNeighbours(shape, known, i);
+    placed.push_back(i);
+  }
+  return placed;
+}
+
+}  // namespace physpring
