@@ -14,17 +14,17 @@ struct Estimate {
   double doubt;
 };
 
-Estimate CentralDifference(const std::function<double()>& loss, double* variable, double step) {
+Estimate CentralDifference(const LossFunction& loss, double* variable, double step) {
   const double x = *variable;
   const auto difference = [&](double s) {
     *variable = x + s;
     const double right = *variable;
-    const double above = loss();
+    const long double above = loss();
     *variable = x - s;
     const double width = right - *variable;  // 2 s as rounded
-    const double below = loss();
+    const long double below = loss();
     *variable = x;
-    return (above - below) / width;
+    return static_cast<double>(above - below) / width;
   };
   const double coarse = difference(step);
   const double middle = difference(step / 2);
@@ -36,7 +36,7 @@ Estimate CentralDifference(const std::function<double()>& loss, double* variable
 
 }  // namespace
 
-GradientReport CheckGradient(const std::function<double()>& loss,
+GradientReport CheckGradient(const LossFunction& loss,
                              const std::vector<CheckedVariable>& variables, double tolerance,
                              double floor) {
   double largest = 0;

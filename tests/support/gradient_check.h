@@ -13,6 +13,10 @@
 
 namespace physpring {
 
+// A loss is summed in long double: rounding it to double would be most of the error of a
+// difference.
+using LossFunction = std::function<long double()>;
+
 // A variable of the loss, with the derivative that is to be checked.
 struct CheckedVariable {
   std::string name;
@@ -31,7 +35,7 @@ struct GradientReport {
 // Passes if for every variable both the error and the doubt are at most `tolerance`, relative to
 // the larger of derivative and numeric, or to `floor` times the largest derivative of all variables
 // (a derivative much smaller than the others drowns in the rounding of the loss).
-GradientReport CheckGradient(const std::function<double()>& loss,
+GradientReport CheckGradient(const LossFunction& loss,
                              const std::vector<CheckedVariable>& variables, double tolerance = 1e-6,
                              double floor = 1e-3);
 

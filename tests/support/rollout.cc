@@ -56,12 +56,14 @@ std::vector<Points> Simulate(const Rollout& rollout) {
 }
 
 template <class Real>
-double Loss(const Rollout& rollout) {
+long double Loss(const Rollout& rollout) {
   const std::vector<Points> positions = Simulate<Real>(rollout);
-  double loss = 0;
+  long double loss = 0;
   for (std::size_t frame = 0; frame < positions.size(); ++frame) {
     const Points difference = positions[frame] - rollout.target[frame];
-    loss += 0.5 * difference.cwiseProduct(LossGradient(rollout, frame, positions[frame])).sum();
+    for (double term : difference.cwiseAbs2().cwiseProduct(rollout.weight[frame]).reshaped()) {
+      loss += 0.5L * term;
+    }
   }
   return loss;
 }
@@ -120,8 +122,8 @@ std::vector<GradientReport> CheckRollout(Rollout rollout, double step) {
 
 template std::vector<Points> Simulate<float>(const Rollout&);
 template std::vector<Points> Simulate<double>(const Rollout&);
-template double Loss<float>(const Rollout&);
-template double Loss<double>(const Rollout&);
+template long double Loss<float>(const Rollout&);
+template long double Loss<double>(const Rollout&);
 template RolloutGradient Gradient<float>(const Rollout&);
 template RolloutGradient Gradient<double>(const Rollout&);
 

@@ -37,7 +37,7 @@ template <class Real>
 std::vector<Points> Simulate(const Rollout& rollout);
 
 template <class Real>
-double Loss(const Rollout& rollout);
+long double Loss(const Rollout& rollout);
 
 template <class Real>
 RolloutGradient Gradient(const Rollout& rollout);
