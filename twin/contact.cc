@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "twin/neighbours.h"
@@ -27,22 +28,13 @@ Eigen::Matrix<Real, 3, 3> Cross(const Eigen::Matrix<Real, 3, 1>& w) {
   return m;
 }
 
-// A geom's pose `elapsed` seconds after the start of the frame.
-Geom Moved(const Geom& geom, double elapsed) {
-  Geom moved = geom;
-  moved.position += elapsed * geom.velocity;
-  const double angle = elapsed * geom.angular_velocity.norm();
-  if (angle > 0) {
-    moved.rotation = Eigen::AngleAxisd(angle, geom.angular_velocity.normalized()) * geom.rotation;
-  }
-  return moved;
-}
-
 }  // namespace
 
 template <class Real>
 Contact<Real>::Contact(const SpringMassSystem& system, const Environment& environment)
-    : nodes_(system.node_count()), has_ground_(environment.ground.has_value()) {
+    : nodes_(system.node_count()),
+      has_ground_(environment.ground.has_value()),
+      distance_(static_cast<Real>(system.contact.collision_distance)) {
   if (has_ground_) {
     ground_normal_ = environment.ground->head<3>().cast<Real>();
     ground_offset_ = static_cast<Real>((*environment.ground)[3]);
@@ -60,7 +52,7 @@ void Contact<Real>::SetParameters(const SpringMassSystem& system) {
   const ContactCoefficients& c = system.contact;
   laws_.surface = {static_cast<Real>(c.restitution), static_cast<Real>(c.friction)};
   laws_.object = {static_cast<Real>(c.object_restitution), static_cast<Real>(c.object_friction)};
-  distance_ = static_cast<Real>(c.collision_distance);
+  assert(distance_ == static_cast<Real>(c.collision_distance));
   radius_.resize(nodes_);
   mass_.resize(nodes_);
   for (int i = 0; i < nodes_; ++i) {
@@ -170,51 +162,72 @@ void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, const Pairs
 }
 
 template <class Real>
-typename Contact<Real>::Touch Contact<Real>::FindTouch(const Vector& x, const Vector& v,
-                                                       Real radius, std::size_t surface,
-                                                       const std::vector<Geom>& geoms,
-                                                       double elapsed, double h) const {
-  Touch touch;
-  Real gap;
-  touch.normal_x.setZero();
-  touch.surface_velocity_x.setZero();
-  touch.surface_velocity.setZero();
-  if (surface == 0) {
-    if (!has_ground_) return touch;
-    touch.normal = ground_normal_;
-    gap = ground_normal_.dot(x) - ground_offset_ - radius;
-  } else {
-    const Geom geom = Moved(geoms[surface - 1], elapsed);
-    const Eigen::Matrix<Real, 3, 3> rotation = geom.rotation.cast<Real>();
-    const Vector arm = x - geom.position.cast<Real>();
-    const Vector local = rotation.transpose() * arm;
-    const Vector half = geom.half_size.cast<Real>();
-    // offset from the nearest point of the box, zero along the axes within it
-    const Vector offset = local - local.cwiseMax(-half).cwiseMin(half);
-    const Real distance = offset.norm();
-    Vector normal;
-    if (distance > 0) {
-      normal = offset / distance;
-      Vector outside;
-      for (int j = 0; j < 3; ++j) outside[j] = offset[j] != 0 ? Real(1) : Real(0);
-      const Eigen::Matrix<Real, 3, 3> projector = outside.asDiagonal();
-      touch.normal_x =
-          rotation * (projector - normal * normal.transpose()) / distance * rotation.transpose();
-      gap = distance;
-    } else {  // inside the box: towards the nearest face
-      int axis = 0;
-      gap = (local.cwiseAbs() - half).maxCoeff(&axis);
-      normal = Vector::Unit(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
+std::vector<typename Contact<Real>::PlacedGeom> Contact<Real>::Place(const std::vector<Geom>& geoms,
+                                                                     double elapsed) {
+  std::vector<PlacedGeom> placed;
+  for (const Geom& geom : geoms) {
+    const double speed = geom.angular_velocity.norm();  // rad/s
+    Eigen::Matrix3d rotation = geom.rotation;
+    if (speed > 0) {
+      rotation = Eigen::AngleAxisd(elapsed * speed, geom.angular_velocity / speed) * geom.rotation;
     }
-    touch.normal = rotation * normal;
-    gap -= static_cast<Real>(geom.radius) + radius;
-    const Vector spin = geom.angular_velocity.cast<Real>();
-    touch.surface_velocity = geom.velocity.cast<Real>() + spin.cross(arm);
-    touch.surface_velocity_x = Cross(spin);
+    const Eigen::Vector3d position = geom.position + elapsed * geom.velocity;
+    placed.push_back({geom.half_size.cast<Real>(), static_cast<Real>(geom.radius),
+                      position.cast<Real>(), rotation.cast<Real>(), geom.velocity.cast<Real>(),
+                      geom.angular_velocity.cast<Real>()});
   }
-  const Real approach = touch.normal.dot(v - touch.surface_velocity);
-  touch.hit = approach < -Real(kApproach) && gap + static_cast<Real>(h) * approach < 0;
+  return placed;
+}
+
+template <class Real>
+typename Contact<Real>::Touch Contact<Real>::GroundTouch(const Vector& x) const {
+  Touch touch;
+  touch.normal = ground_normal_;
+  touch.gap = ground_normal_.dot(x) - ground_offset_;
   return touch;
+}
+
+template <class Real>
+typename Contact<Real>::Touch Contact<Real>::GeomTouch(const PlacedGeom& geom, const Vector& x) {
+  Touch touch;
+  const Vector arm = x - geom.position;
+  const Vector local = geom.rotation.transpose() * arm;
+  // offset from the nearest point of the box, zero along the axes within it
+  const Vector offset = local - local.cwiseMax(-geom.half_size).cwiseMin(geom.half_size);
+  const Real distance = offset.norm();
+  Vector normal;
+  if (distance > 0) {
+    normal = offset / distance;
+    Vector outside;
+    for (int j = 0; j < 3; ++j) outside[j] = offset[j] != 0 ? Real(1) : Real(0);
+    const Eigen::Matrix<Real, 3, 3> projector = outside.asDiagonal();
+    touch.normal_x = geom.rotation * (projector - normal * normal.transpose()) / distance *
+                     geom.rotation.transpose();
+    touch.gap = distance - geom.radius;
+  } else {  // inside the box: towards the nearest face
+    int axis = 0;
+    touch.gap = (local.cwiseAbs() - geom.half_size).maxCoeff(&axis) - geom.radius;
+    normal = Vector::Unit(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
+  }
+  touch.normal = geom.rotation * normal;
+  touch.surface_velocity = geom.velocity + geom.angular_velocity.cross(arm);
+  touch.surface_velocity_x = Cross(geom.angular_velocity);
+  return touch;
+}
+
+template <class Real>
+void Contact<Real>::ApplySurfaces(int i, const Vector& x, const std::vector<PlacedGeom>& geoms,
+                                  Real h, Vector* velocity, std::vector<Touch>* touches) const {
+  const auto apply = [&](Touch touch) {
+    const Vector u = *velocity - touch.surface_velocity;
+    const Real approach = touch.normal.dot(u);
+    if (approach >= -Real(kApproach) || touch.gap - radius_[i] + h * approach >= 0) return;
+    touch.velocity_before = *velocity;
+    *velocity = touch.surface_velocity + Impact<Real>(u, touch.normal, laws_.surface);
+    if (touches) touches->push_back(touch);
+  };
+  if (has_ground_) apply(GroundTouch(x));
+  for (const PlacedGeom& geom : geoms) apply(GeomTouch(geom, x));
 }
 
 template <class Real>
@@ -222,14 +235,9 @@ void Contact<Real>::Apply(const NodeStates<Real>& state, const Pairs& pairs,
                           const std::vector<Geom>& geoms, double elapsed, double h,
                           Velocities* velocity) const {
   if (!pairs.empty()) ApplyPairs(state, pairs, velocity);
+  const std::vector<PlacedGeom> placed = Place(geoms, elapsed);
   for (int i = 0; i < nodes_; ++i) {
-    Vector& v = (*velocity)[i];
-    for (std::size_t surface = 0; surface <= geoms.size(); ++surface) {
-      const Touch touch = FindTouch(X(state[i]), v, radius_[i], surface, geoms, elapsed, h);
-      if (!touch.hit) continue;
-      v = touch.surface_velocity +
-          Impact<Real>(v - touch.surface_velocity, touch.normal, laws_.surface);
-    }
+    ApplySurfaces(i, X(state[i]), placed, static_cast<Real>(h), &(*velocity)[i], nullptr);
   }
 }
 
@@ -240,27 +248,20 @@ void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, const Pairs& pai
                                  ContactGradient<Real>* gradient) const {
   Velocities after_pairs = velocity;
   if (!pairs.empty()) ApplyPairs(state, pairs, &after_pairs);
-  std::vector<std::pair<Touch, Vector>> touches;  // of one node, with the velocity before each
+  const std::vector<PlacedGeom> placed = Place(geoms, elapsed);
+  std::vector<Touch> touches;  // of one node
   for (int i = 0; i < nodes_; ++i) {
     touches.clear();
-    Vector v = after_pairs[i];
-    for (std::size_t surface = 0; surface <= geoms.size(); ++surface) {
-      const Touch touch = FindTouch(X(state[i]), v, radius_[i], surface, geoms, elapsed, h);
-      if (!touch.hit) continue;
-      touches.emplace_back(touch, v);
-      v = touch.surface_velocity +
-          Impact<Real>(v - touch.surface_velocity, touch.normal, laws_.surface);
-    }
+    ApplySurfaces(i, X(state[i]), placed, static_cast<Real>(h), &after_pairs[i], &touches);
     Vector& v_bar = (*velocity_bar)[i];
-    for (auto it = touches.rbegin(); it != touches.rend(); ++it) {
-      const auto& [touch, before] = *it;
+    for (auto touch = touches.rbegin(); touch != touches.rend(); ++touch) {
       // forward: v' = s + Impact(v - s, n)
       Vector u_bar = Vector::Zero(), n_bar = Vector::Zero();
-      ImpactAdjoint<Real>(before - touch.surface_velocity, touch.normal, laws_.surface, v_bar,
-                          &u_bar, &n_bar, &gradient->laws.surface);
+      ImpactAdjoint<Real>(touch->velocity_before - touch->surface_velocity, touch->normal,
+                          laws_.surface, v_bar, &u_bar, &n_bar, &gradient->laws.surface);
       const Vector surface_velocity_bar = v_bar - u_bar;
-      AddX<Real>(touch.normal_x.transpose() * n_bar +
-                     touch.surface_velocity_x.transpose() * surface_velocity_bar,
+      AddX<Real>(touch->normal_x.transpose() * n_bar +
+                     touch->surface_velocity_x.transpose() * surface_velocity_bar,
                  &gradient->state[i]);
       v_bar = u_bar;
     }

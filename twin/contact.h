@@ -43,6 +43,8 @@ class Contact {
   // collide.
   Contact(const SpringMassSystem& system, const Environment& environment);
 
+  // Takes over coefficients, radii and masses of a system of the same topology and the same
+  // collision distance.
   void SetParameters(const SpringMassSystem& system);
 
   // Whether anything can collide when there are `geoms` geoms.
@@ -64,17 +66,30 @@ class Contact {
                     ContactGradient<Real>* gradient) const;
 
  private:
+  // A geom where it stands in a sub-step.
+  struct PlacedGeom {
+    Vector half_size;
+    Real radius;
+    Vector position;
+    Eigen::Matrix<Real, 3, 3> rotation;
+    Vector velocity, angular_velocity;
+  };
   // One impact of a node on a surface.
   struct Touch {
     Vector normal;
-    Vector surface_velocity;
-    Eigen::Matrix<Real, 3, 3> normal_x;  // d normal / d x
-    Eigen::Matrix<Real, 3, 3> surface_velocity_x;
-    bool hit = false;
+    Real gap;
+    Vector surface_velocity = Vector::Zero();
+    Eigen::Matrix<Real, 3, 3> normal_x = Eigen::Matrix<Real, 3, 3>::Zero();  // d normal / d x
+    Eigen::Matrix<Real, 3, 3> surface_velocity_x = Eigen::Matrix<Real, 3, 3>::Zero();
+    Vector velocity_before;
   };
-  // Surface 0 is the ground, the others are the geoms.
-  Touch FindTouch(const Vector& x, const Vector& v, Real radius, std::size_t surface,
-                  const std::vector<Geom>& geoms, double elapsed, double h) const;
+  static std::vector<PlacedGeom> Place(const std::vector<Geom>& geoms, double elapsed);
+  Touch GroundTouch(const Vector& x) const;
+  static Touch GeomTouch(const PlacedGeom& geom, const Vector& x);
+  // Leads node i at x through its impacts with ground and geoms: changes its velocity and, unless
+  // `touches` is null, appends each impact.
+  void ApplySurfaces(int i, const Vector& x, const std::vector<PlacedGeom>& geoms, Real h,
+                     Vector* velocity, std::vector<Touch>* touches) const;
 
   void ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs, Velocities* velocity) const;
   void ApplyPairsAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
