@@ -23,6 +23,7 @@ function(physpring_test source)
   string(REPLACE "/" "_" name "${name}")
   add_executable(${name} ${source} ${test_SUPPORT})
   target_link_libraries(${name} PRIVATE physpring_options ${test_LIBS} GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE PHYSPRING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name}
     TEST_PREFIX "${name}."
     DISCOVERY_MODE PRE_TEST

@@ -172,27 +172,6 @@ std::string SourceBytes(zip_source_t* source) {
   return got == static_cast<zip_int64_t>(bytes.size()) ? bytes : std::string();
 }
 
-std::string ArchiveBytes(const Npz& arrays) {
-  ZipError error;
-  ZipHandle<zip_source_t> source(zip_source_buffer_create(nullptr, 0, 0, error.get()));
-  if (!source) throw Error(error.text());
-  ZipHandle<zip_t> archive(zip_open_from_source(source.get(), ZIP_TRUNCATE, error.get()));
-  if (!archive) throw Error(error.text());
-  zip_source_keep(source.get());  // shared with the archive from here on
-
-  std::vector<std::string> members;
-  members.reserve(arrays.size());
-  for (const auto& [name, array] : arrays) {
-    members.push_back(MemberBytes(array));
-    if (!AddMember(archive.get(), name + ".npy", members.back())) {
-      throw Error(zip_strerror(archive.get()));
-    }
-  }
-  if (zip_close(archive.get()) != 0) throw Error(zip_strerror(archive.get()));
-  archive.release();
-  return SourceBytes(source.get());
-}
-
 }  // namespace
 
 Npz ParseNpz(const std::string& bytes, const std::string& path) {
@@ -213,14 +192,30 @@ Npz ParseNpz(const std::string& bytes, const std::string& path) {
 
 Npz ReadNpz(const std::string& path) { return ParseNpz(ReadFile(path), path); }
 
-void WriteNpz(const Npz& arrays, const std::string& path) {
-  std::string bytes;
-  try {
-    bytes = ArchiveBytes(arrays);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: cannot be packed: {}", path, error.what()));
+std::string PackNpz(const Npz& arrays, const std::string& path) {
+  const auto fail = [&path](const std::string& why) {
+    throw Error(fmt::format("{}: cannot be packed: {}", path, why));
+  };
+  ZipError error;
+  const ZipHandle<zip_source_t> source(zip_source_buffer_create(nullptr, 0, 0, error.get()));
+  if (!source) fail(error.text());
+  ZipHandle<zip_t> archive(zip_open_from_source(source.get(), ZIP_TRUNCATE, error.get()));
+  if (!archive) fail(error.text());
+  zip_source_keep(source.get());  // shared with the archive from here on
+
+  std::vector<std::string> members;  // alive until the archive is closed
+  members.reserve(arrays.size());
+  for (const auto& [name, array] : arrays) {
+    members.push_back(MemberBytes(array));
+    if (!AddMember(archive.get(), name + ".npy", members.back())) fail(zip_strerror(archive.get()));
   }
-  WriteFileAtomically(path, bytes);
+  if (zip_close(archive.get()) != 0) fail(zip_strerror(archive.get()));
+  archive.release();  // closed
+  return SourceBytes(source.get());
+}
+
+void WriteNpz(const Npz& arrays, const std::string& path) {
+  WriteFileAtomically(path, PackNpz(arrays, path));
 }
 
 std::string HashBytes(const std::string& bytes) {

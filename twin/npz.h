@@ -45,6 +45,9 @@ Npz ParseNpz(const std::string& bytes, const std::string& path);
 // file that was there before is untouched and no temporary file is left.
 void WriteNpz(const Npz& arrays, const std::string& path);
 
+// The bytes that WriteNpz writes; `path` only begins the messages.
+std::string PackNpz(const Npz& arrays, const std::string& path);
+
 // 64-bit hash of a file's content as 16 hex digits (for telling recordings apart).
 std::string HashBytes(const std::string& bytes);
 std::string HashFile(const std::string& path);

@@ -40,17 +40,20 @@ struct Twin {
   Eigen::Vector3d gravity{0, 0, -9.81};
 
   std::vector<TrainedOn> trained_on;
-  std::string options_json = "{}";  // the options it was trained with
+  std::string options_json = "{}";  // the options it was trained with, a compact JSON object
   std::uint64_t seed = 0;
 
   // Optimiser state, counters and the like, under the names their owner chose: "train/NAME".
   std::map<std::string, NpzArray> training_state;
 };
 
-// Reads NAME.twin.npz; throws Error naming file, array and expectation.
+// Reads NAME.twin.npz; throws Error naming file, array and expectation. What is read is what was
+// written, bit for bit.
 Twin ReadTwin(const std::string& path);
 
-// Writes atomically: the file at `path` is the old one or the new one, whatever happens.
+// Writes atomically: the file at `path` is the old one or the new one, whatever happens. Throws
+// Error for a twin that ReadTwin would refuse (a level without springs or without
+// substeps_per_second, an assignment that is not onto, ...), and then writes nothing.
 void WriteTwin(const Twin& twin, const std::string& path);
 
 }  // namespace physpring

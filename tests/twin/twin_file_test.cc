@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "tests/support/file_damage.h"
+#include "tests/support/temporary_folder.h"
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+#include "twin/npz.h"
+#include "twin/twin.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kThird = 1.0 / 3.0;  // needs every bit of a double
+
+NpzArray Scalar(double value) { return NpzArray::Doubles({}, &value); }
+NpzArray Vector(const std::vector<double>& values) {
+  return NpzArray::Doubles({values.size()}, values.data());
+}
+NpzArray Ints(const std::vector<int>& values) {
+  return NpzArray::Ints({values.size()}, values.data());
+}
+
+// A chain of `nodes` nodes with one controller at its end.
+TwinLevel MakeLevel(int nodes) {
+  TwinLevel level;
+  SpringMassSystem& system = level.system;
+  system.position = Points::Zero(3, nodes + 1);
+  for (int i = 0; i <= nodes; ++i) system.position(0, i) = kThird * i;
+  system.controllers = 1;
+  system.mass = Eigen::VectorXd::Constant(nodes, 0.1 * kThird);
+  for (int i = 0; i < nodes; ++i) system.springs.push_back({i, i + 1});
+  system.stiffness = Eigen::VectorXd::LinSpaced(nodes, kThird, 1e5);
+  system.rest_length = Eigen::VectorXd::Constant(nodes, kThird);
+  system.dashpot = Eigen::VectorXd::Constant(nodes, std::numeric_limits<double>::denorm_min());
+  system.drag = 0.1;
+  system.contact_radius = Eigen::VectorXd::Constant(nodes, 1e-3);
+  level.substeps_per_second = 20010;
+  return level;
+}
+
+Twin MakeTwin() {
+  Twin twin;
+  twin.name = "rope \"of 1 m\"";
+  twin.levels = {MakeLevel(3), MakeLevel(2)};
+  twin.levels[1].assignment = {0, 0, 1};
+  twin.points = 2;
+  twin.interior = 1;
+  twin.order = Eigen::VectorXd::LinSpaced(4, 0, 1);
+  twin.fps = 29.97;
+  twin.controller_velocity = false;
+  twin.trained_on = {{"rope_lift", "0123456789abcdef", 84}};
+  twin.options_json = R"({"epochs":200,"precision":"double","radius":0.1})";
+  twin.seed = std::numeric_limits<std::uint64_t>::max();
+  twin.training_state["train/adam_m"] = Vector({kThird, -0.0, kNan});
+  return twin;
+}
+
+// A sound twin file whose arrays a test changes.
+class TwinFile : public testing::Test {
+ protected:
+  TwinFile() : path_(folder_.File("rope.twin.npz")) {
+    WriteTwin(MakeTwin(), path_);
+    arrays_ = ReadNpz(path_);
+  }
+
+  std::string ErrorOfChanged() {
+    Overwrite(path_, PackNpz(arrays_, path_));
+    return ErrorOf(path_, [this] { ReadTwin(path_); });
+  }
+
+  // Replaces text in `meta`; it must be there.
+  void ReplaceInMeta(const std::string& old_text, const std::string& new_text) {
+    std::string meta = arrays_["meta"].ToText();
+    const std::size_t place = meta.find(old_text);
+    ASSERT_NE(place, std::string::npos) << old_text << " in " << meta;
+    arrays_["meta"] = NpzArray::Text(meta.replace(place, old_text.size(), new_text));
+  }
+
+  TemporaryFolder folder_;
+  std::string path_;
+  Npz arrays_;
+};
+
+TEST_F(TwinFile, ReadsBackWhatWasWritten) {
+  const Twin twin = MakeTwin();
+  const Twin read = ReadTwin(path_);
+  EXPECT_EQ(read.name, twin.name);
+  EXPECT_EQ(read.points, 2);
+  EXPECT_EQ(read.interior, 1);
+  EXPECT_EQ(read.order, twin.order);
+  EXPECT_EQ(read.fps, 29.97);
+  EXPECT_EQ(read.gravity, twin.gravity);
+  EXPECT_FALSE(read.controller_velocity);
+  EXPECT_EQ(read.seed, twin.seed);
+  EXPECT_EQ(read.options_json, twin.options_json);
+  ASSERT_EQ(read.trained_on.size(), 1u);
+  EXPECT_EQ(read.trained_on[0].name, "rope_lift");
+  EXPECT_EQ(read.trained_on[0].hash, "0123456789abcdef");
+  EXPECT_EQ(read.trained_on[0].train_frames, 84);
+  EXPECT_TRUE(read.training_state == twin.training_state);
+  ASSERT_EQ(read.levels.size(), 2u);
+  EXPECT_TRUE(read.levels[0].assignment.empty());
+  EXPECT_EQ(read.levels[1].assignment, twin.levels[1].assignment);
+}
+
+TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
+  const Twin twin = MakeTwin();
+  const Twin read = ReadTwin(path_);
+  for (std::size_t n = 0; n < 2; ++n) {
+    const SpringMassSystem& expected = twin.levels[n].system;
+    const SpringMassSystem& system = read.levels[n].system;
+    EXPECT_EQ(system.position, expected.position);
+    EXPECT_EQ(system.controllers, 1);
+    EXPECT_EQ(system.mass, expected.mass);
+    EXPECT_EQ(system.springs, expected.springs);
+    EXPECT_EQ(system.stiffness, expected.stiffness);
+    EXPECT_EQ(system.rest_length, expected.rest_length);
+    EXPECT_EQ(system.dashpot, expected.dashpot);
+    EXPECT_EQ(system.drag, expected.drag);
+    EXPECT_EQ(system.contact.restitution, expected.contact.restitution);
+    EXPECT_EQ(system.contact.friction, expected.contact.friction);
+    EXPECT_EQ(system.contact.object_restitution, expected.contact.object_restitution);
+    EXPECT_EQ(system.contact.object_friction, expected.contact.object_friction);
+    EXPECT_EQ(system.contact.collision_distance, expected.contact.collision_distance);
+    EXPECT_EQ(system.contact_radius, expected.contact_radius);
+    EXPECT_EQ(read.levels[n].substeps_per_second, 20010);
+  }
+}
+
+TEST_F(TwinFile, WritesTheSameBytesAgain) {
+  const std::string again = folder_.File("again.twin.npz");
+  WriteTwin(ReadTwin(path_), again);
+  EXPECT_EQ(ReadFile(again), ReadFile(path_));
+}
+
+TEST_F(TwinFile, EveryDamageIsRefused) {
+  ExpectEveryDamageIsRefused(path_, [this] { ReadTwin(path_); });
+}
+
+TEST_F(TwinFile, EveryArrayIsNeeded) {
+  const Npz sound = arrays_;
+  for (const auto& [name, array] : sound) {
+    if (name == "order" || name == "train/adam_m") continue;
+    arrays_ = sound;
+    arrays_.erase(name);
+    EXPECT_NE(ErrorOfChanged().find("array '" + name + "' is missing"), std::string::npos) << name;
+  }
+}
+
+TEST_F(TwinFile, EveryArrayHasOneShape) {
+  const Npz sound = arrays_;
+  for (const auto& [name, array] : sound) {
+    if (name == "meta" || name == "train/adam_m") continue;
+    arrays_ = sound;
+    arrays_[name].shape.push_back(1);
+    const std::string error = ErrorOfChanged();
+    EXPECT_NE(error.find("array '" + name + "' has the shape"), std::string::npos) << error;
+  }
+}
+
+TEST_F(TwinFile, EveryArrayHoldsFiniteNumbers) {
+  const Npz sound = arrays_;
+  for (const auto& [name, array] : sound) {
+    if (name == "meta" || name == "train/adam_m") continue;
+    std::vector<double> values = array.ToDoubles();
+    values.back() = kNan;
+    arrays_ = sound;
+    arrays_[name] = NpzArray::Doubles(array.shape, values.data());
+    const std::string error = ErrorOfChanged();
+    EXPECT_NE(error.find("array '" + name + "' holds nan"), std::string::npos) << error;
+  }
+}
+
+TEST_F(TwinFile, RefusesWhatDisagrees) {
+  struct Case {
+    const char* name;
+    NpzArray array;
+    const char* message;
+  };
+  const std::vector<Case> cases{
+      {"level2/mass", Vector({1}), "array 'level2/mass' is not part of a twin of 2 levels"},
+      {"colour", Scalar(1), "array 'colour' is not part of a twin"},
+      {"level0/assignment", Ints({0, 0, 0}), "'level0/assignment' is not part"},
+      {"level1/assignment", Ints({0, 2, 1}), "holds 2 at [1], expected nodes from 0 to 1"},
+      {"level1/assignment", Ints({0, -1, 1}), "holds -1 at [1]"},
+      {"level1/assignment", Ints({1, 1, 1}), "gives nothing to node 0"},
+      {"level1/assignment", Ints({0, 1}),
+       "shape (2,), expected (nodes below,) with nodes below = 3"},
+      {"level0/mass", Vector({1, 0, 1}), "level 0: mass[1] is 0, expected more than 0"},
+      {"level0/mass", Vector({1, 1}), "array 'level0/contact_radius' has the shape (3,)"},
+      {"level1/stiffness", Vector({1, -1}), "level 1: stiffness[1] is -1, expected 0 or more"},
+      {"level1/rest_length", Vector({0, 1}), "level 1: rest_length[0] is 0, expected more than 0"},
+      {"level1/dashpot", Vector({-1, 1}), "level 1: dashpot[0] is -1"},
+      {"level1/drag", Scalar(-1), "level 1: drag is -1, expected 0 or more"},
+      {"level1/restitution", Scalar(1.5), "restitution is 1.5, expected 0 to 1"},
+      {"level1/friction", Scalar(2.5), "friction is 2.5, expected 0 to 2"},
+      {"level1/object_restitution", Scalar(-1), "object_restitution is -1, expected 0 to 1"},
+      {"level1/object_friction", Scalar(3), "object_friction is 3, expected 0 to 2"},
+      {"level1/collision_distance", Scalar(-1), "collision_distance is -1, expected 0 or more"},
+      {"level1/contact_radius", Vector({0, -1}), "contact_radius[1] is -1"},
+      {"level1/substeps_per_second", Scalar(0), "holds 0, expected more than 0"},
+      {"level1/substeps_per_second", Scalar(0.5), "holds 0.5, expected whole numbers"},
+      {"fps", Scalar(0), "array 'fps' holds 0, expected more than 0"},
+      {"order", Vector({1, 2}), "array 'order' has the shape (2,)"},
+      {"meta", NpzArray::Text("{"), "array 'meta': is not JSON"},
+      {"meta", NpzArray::Text("[1]"), "array 'meta': is not a JSON object"},
+      {"meta", NpzArray::Text(std::string(100000, '[')), "is nested more than 32 deep"},
+      {"meta", Scalar(1), "array 'meta' has the type '<f8'"},
+  };
+  const Npz sound = arrays_;
+  for (const Case& c : cases) {
+    arrays_ = sound;
+    arrays_[c.name] = c.array;
+    const std::string error = ErrorOfChanged();
+    EXPECT_NE(error.find(c.message), std::string::npos) << c.name << " gave " << error;
+  }
+}
+
+TEST_F(TwinFile, RefusesImpossibleSprings) {
+  const std::vector<std::pair<std::vector<int>, const char*>> cases{
+      {{0, 1, 1, 2, 2, 4}, "springs[2] joins 2 and 4, expected numbers from 0 to 3"},
+      {{0, 1, 1, 2, 2, -1}, "springs[2] joins -1 and 2"},
+      {{0, 1, 1, 2, 2, 2}, "springs[2] joins 2 and 2, expected two different nodes"},
+      {{0, 1, 1, 2, 1, 0}, "springs joins 0 and 1 twice"},
+      {{0, 1, 1, 2}, "array 'level0/springs' has the shape (2, 2)"},
+  };
+  for (const auto& [ends, message] : cases) {
+    arrays_["level0/springs"] = NpzArray::Ints({ends.size() / 2, 2}, ends.data());
+    const std::string error = ErrorOfChanged();
+    EXPECT_NE(error.find(message), std::string::npos) << error;
+  }
+}
+
+TEST_F(TwinFile, RefusesAnotherFormatOrVersion) {
+  const Npz sound = arrays_;
+  const std::vector<std::array<const char*, 3>> cases{
+      {"\"version\": 1", "\"version\": 2", "key 'version' holds 2, expected 1"},
+      {"\"version\": 1", "\"version\": \"1\"", "expected a whole number"},
+      {"physpring twin", "other", "key 'format' is not 'physpring twin'"},
+      {"\"seed\"", "\"sead\"", "key 'sead' is not known"},
+      {"\"levels\": 2", "\"levels\": 0", "key 'levels' holds 0"},
+      {"\"levels\": 2", "\"levels\": 3", "array 'level2/mass' is missing"},
+      {"\"levels\": 2", "\"levels\": -2", "key 'levels' holds '-2', expected a whole number"},
+      {"\"points\": 2", "\"points\": 3", "counts 3 points and 1 interior particles"},
+      {"\"points\": 2", "\"points\": 99999999999", "expected a number below 2^31"},
+      {"\"controllers\": 1", "\"controllers\": 2", "'level0/position' has the shape (4, 3)"},
+      {"\"controller_velocity\": false", "\"controller_velocity\": 0", "expected true or false"},
+      {"0123456789abcdef", "0123", "'recordings[0].hash' is not 16 hexadecimal digits"},
+      {"\"train_frames\"", "\"frames\"", "key 'recordings[0].frames' is not known"},
+  };
+  for (const auto& [old_text, new_text, message] : cases) {
+    arrays_ = sound;
+    ReplaceInMeta(old_text, new_text);
+    const std::string error = ErrorOfChanged();
+    EXPECT_NE(error.find(message), std::string::npos) << error;
+  }
+}
+
+TEST_F(TwinFile, DoesNotWriteWhatItWouldNotRead) {
+  const std::string before = ReadFile(path_);
+  const auto expect_refused = [&](const Twin& twin, const std::string& message) {
+    const std::string error = ErrorOf(path_, [&] { WriteTwin(twin, path_); });
+    EXPECT_NE(error.find(message), std::string::npos) << error;
+    EXPECT_EQ(ReadFile(path_), before);
+  };
+  Twin twin = MakeTwin();
+  twin.levels[0].system.stiffness[1] = kNan;
+  expect_refused(twin, "array 'level0/stiffness' holds nan at [1]");
+  twin = MakeTwin();
+  twin.levels.clear();
+  expect_refused(twin, "key 'levels' holds 0");
+  twin = MakeTwin();
+  twin.options_json = "--epochs 3";
+  expect_refused(twin, "options: is not JSON");
+  twin = MakeTwin();
+  twin.training_state["level0/mass"] = Vector({1});
+  expect_refused(twin, "training state 'level0/mass' is not named train/NAME");
+  twin = MakeTwin();
+  twin.levels[0].system.springs.clear();
+  for (auto* values : {&twin.levels[0].system.stiffness, &twin.levels[0].system.rest_length,
+                       &twin.levels[0].system.dashpot}) {
+    values->resize(0);
+  }
+  expect_refused(twin, "array 'level0/springs' holds no spring");
+}
+
+// Arrays are changed at random and packed again with right checksums, so that every check behind
+// the archive is met: whatever is accepted is a valid twin, whatever is not is one line.
+TEST_F(TwinFile, SurvivesRandomChanges) {
+  std::mt19937 random(3);
+  const Npz sound = arrays_;
+  int accepted = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    arrays_ = sound;
+    MutateArrays(arrays_, random);
+    Overwrite(path_, PackNpz(arrays_, path_));
+    try {
+      const Twin twin = ReadTwin(path_);
+      for (const TwinLevel& level : twin.levels) level.system.Validate("accepted");
+      ++accepted;
+    } catch (const Error& error) {
+      ExpectOneLine(path_, error.what());
+    }
+  }
+  EXPECT_GT(accepted, 0);  // the changes are not all hopeless
+}
+
+}  // namespace
+}  // namespace physpring

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/json_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "twin/error.h"
+#include "twin/quote.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kDeepest = 32;
+
+}  // namespace
+
+JsonFields::JsonFields(const std::string& text, std::string where) : where_(std::move(where)) {
+  const auto check_depth = [this](int depth, Json::parse_event_t, Json&) {
+    if (depth <= kDeepest) return true;
+    throw Error(fmt::format("{}: is nested more than {} deep", where_, kDeepest));
+  };
+  try {
+    object_ = Json::parse(text, check_depth);
+  } catch (const Json::parse_error& error) {
+    throw Error(fmt::format("{}: is not JSON, byte {} is unexpected", where_, error.byte));
+  }
+  if (!object_.is_object()) throw Error(fmt::format("{}: is not a JSON object", where_));
+}
+
+std::string JsonFields::Text(const std::string& key) const {
+  if (!Get(key).is_string()) FailKind(key, "text");
+  return Get(key).get<std::string>();
+}
+
+bool JsonFields::Flag(const std::string& key) const {
+  if (!Get(key).is_boolean()) FailKind(key, "true or false");
+  return Get(key).get<bool>();
+}
+
+std::uint64_t JsonFields::Unsigned(const std::string& key) const {
+  if (!Get(key).is_number_unsigned()) FailKind(key, "a whole number, 0 or more");
+  return Get(key).get<std::uint64_t>();
+}
+
+int JsonFields::Count(const std::string& key) const {
+  const std::uint64_t value = Unsigned(key);
+  if (value > std::numeric_limits<int>::max()) FailKind(key, "a number below 2^31");
+  return static_cast<int>(value);
+}
+
+JsonFields JsonFields::Object(const std::string& key) const {
+  if (!Get(key).is_object()) FailKind(key, "an object");
+  return JsonFields(Get(key), where_, parent_ + key + ".");
+}
+
+std::vector<JsonFields> JsonFields::Objects(const std::string& key) const {
+  const Json& array = Get(key);
+  const auto is_object = [](const Json& value) { return value.is_object(); };
+  if (!array.is_array() || !std::all_of(array.begin(), array.end(), is_object)) {
+    FailKind(key, "an array of objects");
+  }
+  std::vector<JsonFields> objects;
+  for (const Json& object : array) {
+    objects.push_back(
+        JsonFields(object, where_, fmt::format("{}{}[{}].", parent_, key, objects.size())));
+  }
+  return objects;
+}
+
+void JsonFields::ExpectOnly(std::initializer_list<std::string_view> keys) const {
+  for (const auto& [key, value] : object_.items()) {
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+    Fail(key, fmt::format("is not known, expected only {}", fmt::join(keys, ", ")));
+  }
+}
+
+void JsonFields::Fail(const std::string& key, const std::string& what) const {
+  throw Error(fmt::format("{}: key {} {}", where_, Quote(parent_ + key), what));
+}
+
+const Json& JsonFields::Get(const std::string& key) const {
+  const auto found = object_.find(key);
+  if (found == object_.end()) Fail(key, "is missing");
+  return *found;
+}
+
+void JsonFields::FailKind(const std::string& key, const std::string& expected) const {
+  const std::string value = Get(key).dump(-1, ' ', true, Json::error_handler_t::replace);
+  Fail(key, fmt::format("holds {}, expected {}", Quote(value), expected));
+}
+
+}  // namespace physpring

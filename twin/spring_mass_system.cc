@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/spring_mass_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSmallestPositive = std::numeric_limits<double>::min();
+
+bool IsInRange(double value, double least, double most) {
+  return std::isfinite(value) && value >= least && value <= most;
+}
+
+[[noreturn]] void FailRange(const std::string& what, double value, double least, double most) {
+  const std::string range = most < kInfinity             ? fmt::format("{} to {}", least, most)
+                            : least >= kSmallestPositive ? "more than 0"
+                                                         : "0 or more";
+  throw Error(fmt::format("{} is {}, expected {}", what, value, range));
+}
+
+// Finite and in [least, most].
+void ExpectInRange(const std::string& what, double value, double least, double most) {
+  if (!IsInRange(value, least, most)) FailRange(what, value, least, most);
+}
+
+void ExpectEach(const std::string& what, const Eigen::VectorXd& values, Eigen::Index size,
+                double least) {
+  if (values.size() != size) {
+    throw Error(fmt::format("{} has {} values, expected {}", what, values.size(), size));
+  }
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (IsInRange(values[i], least, kInfinity)) continue;
+    FailRange(fmt::format("{}[{}]", what, i), values[i], least, kInfinity);
+  }
+}
+
+void ValidatePositions(const SpringMassSystem& system, const std::string& where) {
+  const Eigen::Index columns = system.position.cols();
+  if (system.controllers < 0 || system.controllers >= columns) {
+    throw Error(fmt::format("{}: has {} positions, {} of them controllers, expected a node or more",
+                            where, columns, system.controllers));
+  }
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    if (system.position.col(i).allFinite()) continue;
+    throw Error(fmt::format("{}: position[{}] is not finite", where, i));
+  }
+}
+
+void ValidateSprings(const SpringMassSystem& system, const std::string& where) {
+  const int columns = static_cast<int>(system.position.cols());
+  std::vector<std::array<int, 2>> pairs;
+  pairs.reserve(system.springs.size());
+  for (std::size_t e = 0; e < system.springs.size(); ++e) {
+    const auto [a, b] = std::minmax(system.springs[e][0], system.springs[e][1]);
+    const auto fail = [&, low = a, high = b](const std::string& expected) {
+      throw Error(fmt::format("{}: springs[{}] joins {} and {}, expected {}", where, e, low, high,
+                              expected));
+    };
+    if (a < 0 || b >= columns) fail(fmt::format("numbers from 0 to {}", columns - 1));
+    if (a == b) fail("two different nodes");
+    if (a >= system.node_count()) fail("a node at one end, both are controllers");
+    pairs.push_back({a, b});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
+  if (twice == pairs.end()) return;
+  throw Error(fmt::format("{}: springs joins {} and {} twice, expected one spring for a pair",
+                          where, (*twice)[0], (*twice)[1]));
+}
+
+void ValidateContact(const SpringMassSystem& system, const std::string& where) {
+  const ContactCoefficients& contact = system.contact;
+  ExpectInRange(where + ": restitution", contact.restitution, 0, 1);
+  ExpectInRange(where + ": friction", contact.friction, 0, 2);
+  ExpectInRange(where + ": object_restitution", contact.object_restitution, 0, 1);
+  ExpectInRange(where + ": object_friction", contact.object_friction, 0, 2);
+  ExpectInRange(where + ": collision_distance", contact.collision_distance, 0, kInfinity);
+  ExpectEach(where + ": contact_radius", system.contact_radius, system.node_count(), 0);
+}
+
+}  // namespace
+
+void SpringMassSystem::Validate(const std::string& where) const {
+  ValidatePositions(*this, where);
+  ValidateSprings(*this, where);
+  ExpectEach(where + ": mass", mass, node_count(), kSmallestPositive);
+  ExpectEach(where + ": stiffness", stiffness, spring_count(), 0);
+  ExpectEach(where + ": rest_length", rest_length, spring_count(), kSmallestPositive);
+  ExpectEach(where + ": dashpot", dashpot, spring_count(), 0);
+  ExpectInRange(where + ": drag", drag, 0, kInfinity);
+  ValidateContact(*this, where);
+}
+
+}  // namespace physpring

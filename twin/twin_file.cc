@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// The file of a twin, NAME.twin.npz: numbers as arrays (springs in int32, all else in double, so
+// that what is read is what was written, bit for bit), words and counts as JSON in `meta`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "twin/error.h"
+#include "twin/json_fields.h"
+#include "twin/npz.h"
+#include "twin/npz_fields.h"
+#include "twin/quote.h"
+#include "twin/twin.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "physpring twin";
+constexpr int kVersion = 1;
+constexpr const char* kStatePrefix = "train/";
+
+// Visits every number of a level that is a scalar, under its name in the file.
+template <typename Level, typename Visitor>
+void VisitScalars(Level& level, Visitor visit) {
+  visit("drag", level.system.drag);
+  visit("restitution", level.system.contact.restitution);
+  visit("friction", level.system.contact.friction);
+  visit("object_restitution", level.system.contact.object_restitution);
+  visit("object_friction", level.system.contact.object_friction);
+  visit("collision_distance", level.system.contact.collision_distance);
+}
+
+// Visits every list of numbers of a level, under its name in the file and what it has one of each.
+template <typename Level, typename Visitor>
+void VisitVectors(Level& level, Visitor visit) {
+  visit("mass", "nodes", level.system.mass);
+  visit("stiffness", "springs", level.system.stiffness);
+  visit("rest_length", "springs", level.system.rest_length);
+  visit("dashpot", "springs", level.system.dashpot);
+  visit("contact_radius", "nodes", level.system.contact_radius);
+}
+
+std::string LevelPrefix(std::size_t level) { return fmt::format("level{}/", level); }
+
+std::size_t Size(Eigen::Index count) { return static_cast<std::size_t>(count); }
+
+NpzArray StoreVector(const Eigen::VectorXd& values) {
+  return NpzArray::Doubles({Size(values.size())}, values.data());
+}
+
+void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) {
+  const SpringMassSystem& system = level.system;
+  arrays[prefix + "position"] =
+      NpzArray::Doubles({Size(system.position.cols()), 3}, system.position.data());
+  std::vector<int> ends;
+  for (const auto& [a, b] : system.springs) ends.insert(ends.end(), {a, b});
+  arrays[prefix + "springs"] = NpzArray::Ints({system.springs.size(), 2}, ends.data());
+  arrays[prefix + "substeps_per_second"] = NpzArray::Ints({}, &level.substeps_per_second);
+  if (!level.assignment.empty()) {
+    arrays[prefix + "assignment"] =
+        NpzArray::Ints({level.assignment.size()}, level.assignment.data());
+  }
+  VisitScalars(level, [&](const char* name, const double& value) {
+    arrays[prefix + name] = NpzArray::Doubles({}, &value);
+  });
+  VisitVectors(level, [&](const char* name, const char*, const Eigen::VectorXd& values) {
+    arrays[prefix + name] = StoreVector(values);
+  });
+}
+
+Json Units() {
+  return {{"position", "m"},
+          {"mass", "kg"},
+          {"stiffness", "N/m"},
+          {"rest_length", "m"},
+          {"dashpot", "N s/m"},
+          {"drag", "1/s"},
+          {"order", "m"},
+          {"fps", "1/s"},
+          {"gravity", "m/s^2"},
+          {"contact_radius", "m"},
+          {"collision_distance", "m"}};
+}
+
+std::string StoreMeta(const Twin& twin, const std::string& path) {
+  Json recordings = Json::array();
+  for (const TrainedOn& recording : twin.trained_on) {
+    recordings.push_back({{"name", recording.name},
+                          {"hash", recording.hash},
+                          {"train_frames", recording.train_frames}});
+  }
+  // checked here, then taken over with its keys in their order
+  const JsonFields options(twin.options_json, path + ": options");
+  const Json meta = {{"format", kFormat},
+                     {"version", kVersion},
+                     {"program", "physpring " PHYSPRING_VERSION},
+                     {"units", Units()},
+                     {"name", twin.name},
+                     {"levels", twin.levels.size()},
+                     {"points", twin.points},
+                     {"interior", twin.interior},
+                     {"controllers", twin.levels.empty() ? 0 : twin.levels[0].system.controllers},
+                     {"controller_velocity", twin.controller_velocity},
+                     {"recordings", recordings},
+                     {"seed", twin.seed},
+                     {"options", Json::parse(options.Dump())}};
+  // a file name need not be UTF-8
+  return meta.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+Npz StoreTwin(const Twin& twin, const std::string& path) {
+  Npz arrays;
+  arrays["meta"] = NpzArray::Text(StoreMeta(twin, path));
+  arrays["fps"] = NpzArray::Doubles({}, &twin.fps);
+  arrays["gravity"] = NpzArray::Doubles({3}, twin.gravity.data());
+  if (twin.order.size() > 0) arrays["order"] = StoreVector(twin.order);
+  for (std::size_t n = 0; n < twin.levels.size(); ++n) {
+    StoreLevel(twin.levels[n], LevelPrefix(n), arrays);
+  }
+  for (const auto& [name, array] : twin.training_state) {
+    if (!name.starts_with(kStatePrefix)) {
+      throw Error(fmt::format("{}: training state {} is not named {}NAME", path, Quote(name),
+                              kStatePrefix));
+    }
+    arrays[name] = array;
+  }
+  return arrays;
+}
+
+TrainedOn ReadTrainedOn(const JsonFields& fields) {
+  fields.ExpectOnly({"name", "hash", "train_frames"});
+  TrainedOn recording{fields.Text("name"), fields.Text("hash"), fields.Count("train_frames")};
+  const bool is_hash = recording.hash.empty() ||
+                       (recording.hash.size() == 16 &&
+                        recording.hash.find_first_not_of("0123456789abcdef") == std::string::npos);
+  if (!is_hash) fields.Fail("hash", "is not 16 hexadecimal digits");
+  return recording;
+}
+
+// Fills what `meta` says of the twin; returns the numbers of levels and of controllers.
+std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string& path, Twin& twin) {
+  const JsonFields meta(arrays.Text("meta"), path + ": array 'meta'");
+  if (meta.Text("format") != kFormat) meta.Fail("format", fmt::format("is not '{}'", kFormat));
+  const int version = meta.Count("version");
+  if (version != kVersion) {
+    meta.Fail("version", fmt::format("holds {}, expected {}", version, kVersion));
+  }
+  meta.ExpectOnly({"format", "version", "program", "units", "name", "levels", "points", "interior",
+                   "controllers", "controller_velocity", "recordings", "seed", "options"});
+  twin.name = meta.Text("name");
+  twin.points = meta.Count("points");
+  twin.interior = meta.Count("interior");
+  twin.controller_velocity = meta.Flag("controller_velocity");
+  for (const JsonFields& recording : meta.Objects("recordings")) {
+    twin.trained_on.push_back(ReadTrainedOn(recording));
+  }
+  twin.seed = meta.Unsigned("seed");
+  twin.options_json = meta.Object("options").Dump();
+  const int levels = meta.Count("levels");
+  if (levels < 1) meta.Fail("levels", "holds 0, expected at least 1");
+  return {static_cast<std::size_t>(levels), meta.Count("controllers")};
+}
+
+// Every node of the level below goes to a node of this level, and every node is gone to.
+void ExpectOnto(const NpzFields& fields, const std::string& name,
+                const std::vector<int>& assignment, int nodes) {
+  std::vector<bool> used(static_cast<std::size_t>(nodes), false);
+  for (std::size_t i = 0; i < assignment.size(); ++i) {
+    if (assignment[i] < 0 || assignment[i] >= nodes) {
+      fields.Fail(name, fmt::format("holds {} at [{}], expected nodes from 0 to {}", assignment[i],
+                                    i, nodes - 1));
+    }
+    used[static_cast<std::size_t>(assignment[i])] = true;
+  }
+  const auto unused = std::find(used.begin(), used.end(), false);
+  if (unused == used.end()) return;
+  fields.Fail(name, fmt::format("gives nothing to node {}", unused - used.begin()));
+}
+
+TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, int controllers,
+                    int nodes_below) {
+  const std::string prefix = LevelPrefix(n);
+  TwinLevel level;
+  VisitVectors(level, [&](const char* name, const char* size, Eigen::VectorXd& values) {
+    values = fields.Vector(prefix + name, size);
+  });
+  VisitScalars(level,
+               [&](const char* name, double& value) { value = fields.Scalar(prefix + name); });
+  fields.SetExtent("nodes+controllers", fields.Extent("nodes") + Size(controllers));
+  level.system.position = fields.Positions(prefix + "position", "nodes+controllers");
+  level.system.controllers = controllers;
+  const std::vector<int> ends = fields.Ints(prefix + "springs", {"springs", "2"});
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    level.system.springs.push_back({ends[i], ends[i + 1]});
+  }
+  level.system.Validate(where);
+  if (ends.empty()) fields.Fail(prefix + "springs", "holds no spring, expected one or more");
+
+  level.substeps_per_second = fields.Ints(prefix + "substeps_per_second", {})[0];
+  if (level.substeps_per_second < 1) {
+    fields.Fail(prefix + "substeps_per_second",
+                fmt::format("holds {}, expected more than 0", level.substeps_per_second));
+  }
+  if (n == 0) return level;
+  fields.SetExtent("nodes below", static_cast<std::size_t>(nodes_below));
+  level.assignment = fields.Ints(prefix + "assignment", {"nodes below"});
+  ExpectOnto(fields, prefix + "assignment", level.assignment, level.system.node_count());
+  return level;
+}
+
+Twin ParseTwin(const Npz& arrays, const std::string& path) {
+  NpzFields fields(arrays, path);
+  Twin twin;
+  const auto [levels, controllers] = ReadMeta(fields, path, twin);
+
+  int nodes_below = 0;
+  for (std::size_t n = 0; n < levels; ++n) {
+    const std::string where = fmt::format("{}: level {}", path, n);
+    twin.levels.push_back(ReadLevel(fields, where, n, controllers, nodes_below));
+    nodes_below = twin.levels[n].system.node_count();
+  }
+  const int nodes = twin.levels[0].system.node_count();
+  if (twin.points < 1 || twin.points > nodes || twin.interior != nodes - twin.points) {
+    fields.Fail("meta", fmt::format("counts {} points and {} interior particles, but level 0 has "
+                                    "{} nodes",
+                                    twin.points, twin.interior, nodes));
+  }
+  twin.fps = fields.Scalar("fps");
+  if (twin.fps <= 0) fields.Fail("fps", fmt::format("holds {}, expected more than 0", twin.fps));
+  twin.gravity = fields.Vector("gravity", "3");
+  fields.SetExtent("nodes+controllers", Size(twin.levels[0].system.position.cols()));
+  if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
+
+  for (const auto& [name, array] : arrays) {
+    if (name.starts_with(kStatePrefix)) twin.training_state[name] = array;
+  }
+  // what was read is all there is: storing it again gives the same names
+  const Npz known = StoreTwin(twin, path);
+  for (const auto& [name, array] : arrays) {
+    if (known.contains(name)) continue;
+    fields.Fail(fmt::format("array {} is not part of a twin of {} levels", Quote(name), levels));
+  }
+  return twin;
+}
+
+}  // namespace
+
+Twin ReadTwin(const std::string& path) { return ParseTwin(ReadNpz(path), path); }
+
+void WriteTwin(const Twin& twin, const std::string& path) {
+  const Npz arrays = StoreTwin(twin, path);
+  ParseTwin(arrays, path);  // what the reader would refuse is not written
+  WriteNpz(arrays, path);
+}
+
+}  // namespace physpring
