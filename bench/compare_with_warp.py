@@ -36,8 +36,8 @@ def install_warp(folder):
             subprocess.run([sys.executable, "-m", "venv", "--clear", folder], check=True)
             subprocess.run([python, "-m", "pip", "install", "--quiet", WARP, "numpy"], check=True)
         except subprocess.CalledProcessError:
-            sys.exit("compare_with_warp: Warp could not be installed (needs python3-venv and PyPI), "
-                     "give an interpreter that has it with --warp-python")
+            sys.exit("compare_with_warp: cannot install Warp (needs python3-venv and PyPI); "
+                     "--warp-python PYTHON names an interpreter that has it")
         (folder / WARP).touch()
     return str(python)
 
