@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/lift.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "tests/support/small_twin.h"
+#include "twin/hierarchy.h"
+#include "twin/rotation.h"
+
+namespace physpring {
+namespace {
+
+Points StartOf(const Twin& twin) {
+  const SpringMassSystem& system = twin.levels[0].system;
+  return system.position.leftCols(system.node_count());
+}
+
+TEST(Lift, IsTheIdentityAtLevel0) {
+  const Twin twin = SmallTwin(2);
+  const Points nodes = Points::Random(3, 40);
+  EXPECT_EQ(Lift(twin, 0, StartOf(twin)).Apply(nodes), nodes);
+}
+
+TEST(Lift, GivesTheStartBack) {
+  const Twin twin = SmallTwin(3);
+  const Points start = StartOf(twin) + 0.003 * Points::Random(3, 40);  // not the twin's own
+  for (int level : {1, 2}) {
+    const Points lifted = Lift(twin, level, start).Apply(AverageOverMembers(twin, level, start));
+    EXPECT_LT((lifted - start).cwiseAbs().maxCoeff(), 1e-15);
+  }
+}
+
+TEST(Lift, FollowsARigidMotion) {
+  const Twin twin = SmallTwin(3);
+  const Points start = StartOf(twin);
+  const Eigen::AngleAxisd rotation(2, Eigen::Vector3d(1, -2, 0.5).normalized());
+  const Eigen::Vector3d shift(0.3, -0.1, 0.2);
+  const Points moved = (rotation.toRotationMatrix() * start).colwise() + shift;
+  const Points lifted = Lift(twin, 1, start).Apply(AverageOverMembers(twin, 1, moved));
+  // the planar neighbourhoods of level 1 determine their rotation; 20 mm of arm
+  EXPECT_LT((lifted - moved).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(Lift, BlendsTheFourNearestNodesByDistance) {
+  const Twin twin = SmallTwin(2);
+  const Points start = StartOf(twin);
+  Points nodes = AverageOverMembers(twin, 1, start);
+  // particle 0 lies in node 0, at the corner of the block; a node that is not near does not move it
+  nodes.col(19) += Eigen::Vector3d(0, 0, 0.01);
+  const Points lifted = Lift(twin, 1, start).Apply(nodes);
+  EXPECT_LT((lifted.col(0) - start.col(0)).norm(), 1e-15);
+  // its own members move most of the way up
+  EXPECT_GT(lifted(2, 19) - start(2, 19), 0.005);
+  EXPECT_LT(lifted(2, 19) - start(2, 19), 0.01);
+}
+
+TEST(FitRotation, FindsTheRotationOfACloud) {
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, 1, -3).normalized()).toRotationMatrix();
+  const Points from = Points::Random(3, 12);
+  EXPECT_LT((FitRotation(from, rotation * from) - rotation).norm(), 1e-4);
+}
+
+TEST(FitRotation, DoesNotTwistALine) {
+  Points from(3, 2);
+  from << 1, -2, 0, 0, 0, 0;
+  const Eigen::Matrix3d rotation = FitRotation(from, Eigen::Vector3d(0, 1, 0) * from.row(0));
+  const Eigen::Matrix3d expected =
+      Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  EXPECT_LT((rotation - expected).norm(), 1e-4);
+}
+
+TEST(FitRotation, IsARotationEvenForAMirroredCloud) {
+  const Points from = Points::Random(3, 12);
+  EXPECT_NEAR(FitRotation(from, -from).determinant(), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace physpring
