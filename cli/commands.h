@@ -8,6 +8,9 @@
 
 namespace physpring {
 
+void AddRecordCommand(CLI::App& app);
+void AddDoctorCommand(CLI::App& app);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_CLI_COMMANDS_H_

@@ -9,6 +9,8 @@ int main(int argc, char** argv) {
   CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);
+  physpring::AddRecordCommand(app);
+  physpring::AddDoctorCommand(app);
   try {
     app.parse(argc, argv);
     return 0;

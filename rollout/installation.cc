@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/installation.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include "rollout/mujoco_log.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+Finding Compiler() {
+#ifdef __clang__
+  return {"compiler", "Clang " __clang_version__};
+#else
+  return {"compiler", "GCC " __VERSION__};
+#endif
+}
+
+// Of the library that holds mj_version in this process.
+std::filesystem::path MujocoLibrary() {
+  Dl_info info;
+  if (dladdr(reinterpret_cast<void*>(&mj_version), &info) == 0 || !info.dli_fname) return {};
+  std::error_code ignored;
+  const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, ignored);
+  return ignored ? std::filesystem::path(info.dli_fname) : file;
+}
+
+Finding Mujoco() {
+  // mjVERSION_HEADER is MMMmmmppp
+  constexpr int kHeader = mjVERSION_HEADER;
+  const std::string header =
+      fmt::format("{}.{}.{}", kHeader / 1000000, kHeader / 1000 % 1000, kHeader % 1000);
+  Finding finding{"MuJoCo", fmt::format("{} (headers {}), {}", mj_versionString(), header,
+                                        MujocoLibrary().string())};
+  finding.required = true;
+  if (mj_version() != kHeader) {
+    finding.problem = fmt::format(
+        "built for {}, but another version is loaded; rebuild, or correct LD_LIBRARY_PATH", header);
+  }
+  return finding;
+}
+
+std::filesystem::path PluginFolder() {
+  if (const char* folder = std::getenv("MUJOCO_PLUGIN_DIR")) return folder;
+  const std::filesystem::path library_folder = MujocoLibrary().parent_path();
+  const std::filesystem::path release = library_folder.parent_path() / "bin" / "mujoco_plugin";
+  return std::filesystem::is_directory(release) ? release : library_folder / "plugin";
+}
+
+Finding Plugins() {
+  const std::filesystem::path folder = PluginFolder();
+  Finding finding{"plugins", ""};
+  if (std::filesystem::is_directory(folder)) {
+    try {
+      CatchMujoco([&] { mj_loadAllPluginLibraries(folder.c_str(), nullptr); });
+    } catch (const Error& error) {
+      finding.problem = error.what();
+    }
+  } else {
+    finding.problem = folder.string() + " is not a folder; MUJOCO_PLUGIN_DIR can name another";
+  }
+  std::vector<std::string> names;
+  for (int slot = 0; slot < mjp_pluginCount(); ++slot) {
+    names.push_back(mjp_getPluginAtSlot(slot)->name);
+  }
+  finding.found = names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  return finding;
+}
+
+// The version of OpenGL that OSMesa gives a small off-screen context, or empty.
+std::string OsMesaVersion(void* library) {
+  using Create = void* (*)(unsigned, int, int, int, void*);
+  using MakeCurrent = unsigned char (*)(void*, void*, unsigned, int, int);
+  using Destroy = void (*)(void*);
+  using GetProcAddress = void* (*)(const char*);
+  using GetString = const char* (*)(unsigned);
+  const auto create = reinterpret_cast<Create>(dlsym(library, "OSMesaCreateContextExt"));
+  const auto make_current = reinterpret_cast<MakeCurrent>(dlsym(library, "OSMesaMakeCurrent"));
+  const auto destroy = reinterpret_cast<Destroy>(dlsym(library, "OSMesaDestroyContext"));
+  const auto address = reinterpret_cast<GetProcAddress>(dlsym(library, "OSMesaGetProcAddress"));
+  if (!create || !make_current || !destroy || !address) return "";
+  const auto get_string = reinterpret_cast<GetString>(address("glGetString"));
+
+  constexpr unsigned kRgba = 0x1908, kUnsignedByte = 0x1401, kVersion = 0x1F02;
+  constexpr int kSize = 4;  // pixels
+  std::array<unsigned char, 4 * kSize * kSize> pixels{};
+  void* context = create(kRgba, 24, 8, 8, nullptr);
+  if (!context) return "";
+  std::string version;
+  if (get_string && make_current(context, pixels.data(), kUnsignedByte, kSize, kSize)) {
+    if (const char* text = get_string(kVersion)) version = text;
+  }
+  destroy(context);
+  return version;
+}
+
+Finding OffScreenGl() {
+  for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}) {
+    void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL);  // stays open: it has threads
+    if (!library) continue;
+    const std::string version = OsMesaVersion(library);
+    if (!version.empty()) return {"OSMesa", fmt::format("OpenGL {}, {}", version, name)};
+    return {"OSMesa", name, "gives no OpenGL context; pictures cannot be made"};
+  }
+  return {"OSMesa", "not found", "pictures cannot be made; install libosmesa6"};
+}
+
+Finding Processor() {
+#if defined(__x86_64__)
+  const auto word = [](int supported) { return supported ? "yes" : "no"; };
+  return {
+      "processor",
+      fmt::format("x86-64, avx2 {}, fma {}, avx512f {}", word(__builtin_cpu_supports("avx2")),
+                  word(__builtin_cpu_supports("fma")), word(__builtin_cpu_supports("avx512f")))};
+#else
+  return {"processor", "not x86-64"};
+#endif
+}
+
+}  // namespace
+
+std::vector<Finding> InspectInstallation() {
+  return {{"physpring", PHYSPRING_VERSION},
+          Compiler(),
+          Mujoco(),
+          Plugins(),
+          OffScreenGl(),
+          Processor()};
+}
+
+}  // namespace physpring

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings of simulated objects: a MuJoCo scene with one flex, moved by mocap bodies, as a camera
+// would see it. Its mechanics (finite elements, rods, shells, MuJoCo's contacts) have nothing in
+// common with a twin's, so a twin that explains it has learned something.
+//
+// Motion: mocap_path.h. What is measured and what is held: flex_points.h. Measurement:
+// observation.h.
+#ifndef PHYSPRING_ROLLOUT_RECORD_H_
+#define PHYSPRING_ROLLOUT_RECORD_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "twin/recording.h"
+
+namespace physpring {
+
+struct RecordOptions {
+  double noise = 0;        // m, standard deviation of each measured coordinate; frame 0 is exact
+  double occlusion = 0;    // in [0, 1): fraction of points hidden in each frame; in frame 0 none
+  double vary = 0;         // m: keyframes are shifted by up to this, see MocapPath::Vary
+  std::uint64_t seed = 0;  // of noise, occlusion and variation, each independent of the others
+  std::optional<double> duration = {};  // s; default: until the last keyframe
+  double fps = 30;                      // frames per second
+};
+
+// Simulates the scene from its first keyframe and records it from time 0 on (a first keyframe at a
+// negative time lets the object settle before). Sub-steps are the scene's time step, shortened so
+// that a frame is a whole number of them. `rest` is given where frame 0 is not the scene's
+// reference configuration, in which a flex is stress-free. Ground is the one plane that the flex
+// can collide with; other such geoms are warned of, because a recording does not hold them.
+//
+// Throws Error, one line that begins with `scene_path`: unreadable scene, compiler error, options
+// out of range, a scene that is not one flex held by mocap bodies, an unstable simulation.
+Recording RecordScene(const std::string& scene_path, const RecordOptions& options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_ROLLOUT_RECORD_H_
