@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/spring_force.h"
+#include "twin/kernel_choice.h"
 
 namespace physpring {
 
@@ -31,13 +31,14 @@ SystemGradient& SystemGradient::operator+=(const SystemGradient& other) {
 template <class Real>
 Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& environment,
                            const SimulationOptions& options)
-    : nodes_(system.node_count()),
+    : kernel_(&BestKernel<Real>()),
+      nodes_(system.node_count()),
       controllers_(system.controllers),
       options_(options),
       h_(static_cast<Real>(options.frame_time / options.substeps)),
       springs_(system),
       contact_(system, environment) {
-  for (int j = 0; j < 3; ++j) gravity_[j] = static_cast<Real>(environment.gravity[j]);
+  for (int j = 0; j < 3; ++j) kick_.f[j] = h_ * static_cast<Real>(environment.gravity[j]);
   SetParameters(system);
 }
 
@@ -46,21 +47,20 @@ void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
   springs_.SetParameters(system);
   contact_.SetParameters(system);
   decay_ = static_cast<Real>(std::exp(-options_.frame_time / options_.substeps * system.drag));
-  inverse_mass_.resize(nodes_);
-  for (int i = 0; i < nodes_; ++i) inverse_mass_[i] = static_cast<Real>(1 / system.mass[i]);
+  h_over_mass_.resize(nodes_);
+  for (int i = 0; i < nodes_; ++i) h_over_mass_[i] = h_ * static_cast<Real>(1 / system.mass[i]);
 }
 
 template <class Real>
 typename Simulator<Real>::State Simulator<Real>::MakeState(const Points& position,
                                                            const Points& velocity) const {
-  State state(springs_.spare_node + 2);
+  State state(springs_.spare_node + 1);
   for (int i = 0; i < nodes_; ++i) {
     for (int j = 0; j < 3; ++j) {
       state[i].x[j] = static_cast<Real>(position(j, i));
       state[i].v[j] = static_cast<Real>(velocity(j, i));
     }
   }
-  state[springs_.spare_node + 1].x[0] = 1;
   return state;
 }
 
@@ -84,10 +84,9 @@ Points Simulator<Real>::Velocities(const State& state) const {
 
 template <class Real>
 Simulator<Real>::Workspace::Workspace(const Simulator& simulator)
-    : next(simulator.springs_.spare_node + 2),
-      force(simulator.springs_.spare_node + 2),
-      spring_gradient(simulator.springs_.size()),
-      mass_gradient(simulator.nodes_) {}
+    : next(simulator.springs_.spare_node + 1),
+      force(simulator.springs_.spare_node + 1),
+      spring_gradient(simulator.springs_.size()) {}
 
 template <class Real>
 void Simulator<Real>::PlaceControllers(const FrameInput& input, int substep, State* state) const {
@@ -110,16 +109,8 @@ void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Re
                               NodeForces<Real>* force) const {
   PlaceControllers(input, substep, state);
   std::fill(force->begin(), force->end(), NodeForce<Real>{});
-  AddSpringForces(springs_, state->data(), force->data());
-
-  // v* = (v + h (F / m + g)) exp(-h drag)
-  const Real kick[3] = {h_ * gravity_[0], h_ * gravity_[1], h_ * gravity_[2]};
-  for (int i = 0; i < nodes_; ++i) {
-    const Real h_over_m = h_ * inverse_mass_[i];
-    for (int j = 0; j < 3; ++j) {
-      (*next)[i].v[j] = ((*state)[i].v[j] + ((*force)[i].f[j] * h_over_m + kick[j])) * decay_;
-    }
-  }
+  kernel_->add_spring_forces(springs_.View(), state->data(), force->data());
+  kernel_->update_velocities(Nodes(), state->data(), force->data(), next->data());
   if (contact_.Active(input.geoms.size())) {
     before_contact->resize(nodes_);
     for (int i = 0; i < nodes_; ++i) {
@@ -132,62 +123,42 @@ void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Re
       for (int j = 0; j < 3; ++j) (*next)[i].v[j] = after[i][j];
     }
   }
-  for (int i = 0; i < nodes_; ++i) {
-    for (int j = 0; j < 3; ++j) (*next)[i].x[j] = (*state)[i].x[j] + h_ * (*next)[i].v[j];
-  }
+  kernel_->update_positions(Nodes(), state->data(), next->data());
 }
 
 template <class Real>
 void Simulator<Real>::SubstepAdjoint(const FrameInput& input,
                                      const typename Contact<Real>::Pairs& pairs, int substep,
-                                     const State& state, const State& next,
-                                     const typename Contact<Real>::Velocities& before_contact,
                                      State* state_bar, Workspace* workspace) const {
-  const bool contact = contact_.Active(input.geoms.size());
-  // forward: x' = x + h v'
-  for (int i = 0; i < nodes_; ++i) {
-    for (int j = 0; j < 3; ++j) (*state_bar)[i].v[j] += h_ * (*state_bar)[i].x[j];
-  }
-  // forward: v' = contacts(v*)
-  if (contact) {
+  const State& state = workspace->states[substep];
+  State& next = workspace->states[substep + 1];
+  kernel_->update_positions_adjoint(Nodes(), state_bar->data());
+  if (contact_.Active(input.geoms.size())) {
     typename Contact<Real>::Velocities velocity_bar(nodes_);
     for (int i = 0; i < nodes_; ++i) {
       velocity_bar[i] = {(*state_bar)[i].v[0], (*state_bar)[i].v[1], (*state_bar)[i].v[2]};
     }
-    ContactGradient<Real> gradient{state_bar->data(), workspace->mass_gradient.data(), {}};
+    const typename Contact<Real>::Velocities& before = workspace->before_contact[substep];
+    ContactGradient<Real> gradient{state_bar->data(), workspace->contact_mass_gradient.data(), {}};
     const double h = options_.frame_time / options_.substeps;
-    contact_.ApplyAdjoint(state, pairs, input.geoms, substep * h, h, before_contact, &velocity_bar,
+    contact_.ApplyAdjoint(state, pairs, input.geoms, substep * h, h, before, &velocity_bar,
                           &gradient);
     workspace->contact_gradient.surface.restitution += gradient.laws.surface.restitution;
     workspace->contact_gradient.surface.friction += gradient.laws.surface.friction;
     workspace->contact_gradient.object.restitution += gradient.laws.object.restitution;
     workspace->contact_gradient.object.friction += gradient.laws.object.friction;
     for (int i = 0; i < nodes_; ++i) {
-      for (int j = 0; j < 3; ++j) (*state_bar)[i].v[j] = velocity_bar[i][j];
+      for (int j = 0; j < 3; ++j) {
+        (*state_bar)[i].v[j] = velocity_bar[i][j];
+        next[i].v[j] = before[i][j];
+      }
     }
   }
-  // forward: v* = p exp(-h drag), p = v + (F h / m + h g)
-  const Real inverse_decay = 1 / decay_;
-  Real drag_bar = 0, gravity_bar[3] = {0, 0, 0};
-  for (int i = 0; i < nodes_; ++i) {
-    const Real h_over_m = h_ * inverse_mass_[i];
-    Real power = 0;  // p_bar . (F h / m)
-    for (int j = 0; j < 3; ++j) {
-      const Real after = contact ? before_contact[i][j] : next[i].v[j];
-      const Real p_bar = (*state_bar)[i].v[j] * decay_;
-      drag_bar -= h_ * after * (*state_bar)[i].v[j];
-      gravity_bar[j] += h_ * p_bar;
-      power += p_bar * (after * inverse_decay - state[i].v[j] - h_ * gravity_[j]);
-      (*state_bar)[i].v[j] = p_bar;
-      workspace->force[i].f[j] = p_bar * h_over_m;
-    }
-    workspace->mass_gradient[i] -= power * inverse_mass_[i];
-  }
-  workspace->drag_gradient += drag_bar;
-  for (int j = 0; j < 3; ++j) workspace->gravity_gradient[j] += gravity_bar[j];
-  // forward: F = springs(x, v)
-  AddSpringForcesAdjoint(springs_, state.data(), workspace->force.data(), state_bar->data(),
-                         &workspace->spring_gradient);
+  kernel_->update_velocities_adjoint(
+      Nodes(), state.data(), next.data(), state_bar->data(), workspace->force.data(),
+      {workspace->mass_gradient.data(), &workspace->drag_gradient, &workspace->gravity_gradient});
+  kernel_->add_spring_forces_adjoint(springs_.View(), state.data(), workspace->force.data(),
+                                     state_bar->data(), workspace->spring_gradient.View());
 }
 
 template <class Real>
@@ -195,7 +166,6 @@ void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
                                    Workspace* workspace) const {
   const auto pairs = contact_.FindPairs(*state, options_.frame_time);
   workspace->before_contact.resize(1);
-  workspace->next.back() = state->back();
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, pairs, i, state, &workspace->next, &workspace->before_contact[0],
             &workspace->force);
@@ -208,42 +178,57 @@ void Simulator<Real>::AdvanceFrameAdjoint(const State& start, const FrameInput& 
                                           State* state_bar, SystemGradient* gradient,
                                           Workspace* workspace) const {
   const auto pairs = contact_.FindPairs(start, options_.frame_time);
-  workspace->states.assign(options_.substeps + 1, start);
+  workspace->states.resize(options_.substeps + 1, State(start.size()));
+  workspace->states[0] = start;
   workspace->before_contact.resize(options_.substeps);
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, pairs, i, &workspace->states[i], &workspace->states[i + 1],
             &workspace->before_contact[i], &workspace->force);
   }
 
-  // controllers and spare nodes feel no force: their entries stay 0
+  workspace->ClearGradients(nodes_);
+  // controllers and the spare node feel no force: their entries stay 0
   std::fill(workspace->force.begin(), workspace->force.end(), NodeForce<Real>{});
-  workspace->spring_gradient = SpringBlockGradient<Real>(springs_.size());
-  workspace->mass_gradient.assign(nodes_, 0);
-  workspace->contact_gradient = {};
-  workspace->drag_gradient = 0;
-  std::fill_n(workspace->gravity_gradient, 3, Real(0));
   for (int i = options_.substeps - 1; i >= 0; --i) {
-    SubstepAdjoint(input, pairs, i, workspace->states[i], workspace->states[i + 1],
-                   workspace->before_contact[i], state_bar, workspace);
+    SubstepAdjoint(input, pairs, i, state_bar, workspace);
   }
   // the controllers' motion is given: what was added to them does not count
   std::fill(state_bar->begin() + nodes_, state_bar->end(), NodeState<Real>{});
+  AddGradients(*workspace, gradient);
+}
 
+template <class Real>
+void Simulator<Real>::Workspace::ClearGradients(int nodes) {
+  spring_gradient.Clear();
+  mass_gradient.assign(nodes, {});
+  contact_mass_gradient.assign(nodes, 0);
+  drag_gradient = gravity_gradient = {};
+  contact_gradient = {};
+}
+
+template <class Real>
+void Simulator<Real>::AddGradients(const Workspace& workspace, SystemGradient* gradient) const {
+  const auto sum = [](const NodeForce<Real>& term) {
+    return static_cast<double>(term.f[0] + term.f[1] + term.f[2]);
+  };
   for (int i = 0; i < springs_.size(); ++i) {
     const int e = springs_.spring[i];
     if (e < 0) continue;
-    gradient->stiffness[e] += static_cast<double>(workspace->spring_gradient.stiffness[i]);
-    gradient->rest_length[e] += static_cast<double>(workspace->spring_gradient.rest_length[i]);
-    gradient->dashpot[e] += static_cast<double>(workspace->spring_gradient.dashpot[i]);
+    gradient->stiffness[e] += static_cast<double>(workspace.spring_gradient.stiffness[i]);
+    gradient->rest_length[e] += static_cast<double>(workspace.spring_gradient.rest_length[i]);
+    gradient->dashpot[e] += static_cast<double>(workspace.spring_gradient.dashpot[i]);
   }
+  const double h = options_.frame_time / options_.substeps;
   for (int i = 0; i < nodes_; ++i) {
-    gradient->mass[i] += static_cast<double>(workspace->mass_gradient[i]);
+    const double inverse_mass = static_cast<double>(h_over_mass_[i]) / h;
+    gradient->mass[i] += static_cast<double>(workspace.contact_mass_gradient[i]) -
+                         sum(workspace.mass_gradient[i]) * inverse_mass;
   }
-  gradient->drag += static_cast<double>(workspace->drag_gradient);
+  gradient->drag -= h * sum(workspace.drag_gradient);
   for (int j = 0; j < 3; ++j) {
-    gradient->gravity[j] += static_cast<double>(workspace->gravity_gradient[j]);
+    gradient->gravity[j] += h * static_cast<double>(workspace.gravity_gradient.f[j]);
   }
-  const ContactLaws<Real>& laws = workspace->contact_gradient;
+  const ContactLaws<Real>& laws = workspace.contact_gradient;
   gradient->contact.surface.restitution += static_cast<double>(laws.surface.restitution);
   gradient->contact.surface.friction += static_cast<double>(laws.surface.friction);
   gradient->contact.object.restitution += static_cast<double>(laws.object.restitution);

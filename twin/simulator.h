@@ -3,9 +3,9 @@
 // sub-steps of h = frame_time / substeps; each is semi-implicit Euler:
 //   controllers to their place at the end of the sub-step (linear within the frame)
 //   F   springs and dashpots at (x, v)                                 spring_force.h
-//   v*  = (v + h (F / m + g)) exp(-h drag)
+//   v*  = (v + h (F / m + g)) exp(-h drag)                             node_update.h
 //   v'  = contacts(v*)                                                 contact.h
-//   x'  = x + h v'
+//   x'  = x + h v'                                                     node_update.h
 // The adjoint of a frame recomputes the frame from its first state (the checkpoint) and goes
 // through its sub-steps backwards; memory is one frame, whatever the length of the rollout.
 #ifndef PHYSPRING_TWIN_SIMULATOR_H_
@@ -15,6 +15,7 @@
 
 #include "twin/contact.h"
 #include "twin/environment.h"
+#include "twin/kernel.h"
 #include "twin/node_state.h"
 #include "twin/spring_blocks.h"
 #include "twin/spring_mass_system.h"
@@ -82,16 +83,18 @@ class Simulator {
                State* state, State* next, typename Contact<Real>::Velocities* before_contact,
                NodeForces<Real>* force) const;
   void SubstepAdjoint(const FrameInput& input, const typename Contact<Real>::Pairs& pairs,
-                      int substep, const State& state, const State& next,
-                      const typename Contact<Real>::Velocities& before_contact, State* state_bar,
-                      Workspace* workspace) const;
+                      int substep, State* state_bar, Workspace* workspace) const;
+  void AddGradients(const Workspace& workspace, SystemGradient* gradient) const;
 
+  NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
+
+  const Kernel<Real>* kernel_;
   int nodes_, controllers_;
   SimulationOptions options_;
   Real h_;
-  Real decay_ = 1;  // exp(-h drag)
-  Real gravity_[3];
-  std::vector<Real> inverse_mass_;
+  Real decay_ = 1;        // exp(-h drag)
+  NodeForce<Real> kick_;  // h g
+  std::vector<Real> h_over_mass_;
   SpringBlocks<Real> springs_;
   Contact<Real> contact_;
 };
@@ -103,15 +106,19 @@ class Simulator<Real>::Workspace {
 
  private:
   friend class Simulator;
+  void ClearGradients(int nodes);
+
   State next;
   NodeForces<Real> force;
   std::vector<State> states;  // at the start of each sub-step of a frame, and at its end
   std::vector<typename Contact<Real>::Velocities> before_contact;  // of each sub-step
+
+  // Sums over the sub-steps of a frame.
   SpringBlockGradient<Real> spring_gradient;
-  std::vector<Real> mass_gradient;
+  NodeForces<Real> mass_gradient;  // this, drag and gravity: see node_update.h
+  NodeForce<Real> drag_gradient, gravity_gradient;
+  std::vector<Real> contact_mass_gradient;
   ContactLaws<Real> contact_gradient;
-  Real drag_gradient = 0;
-  Real gravity_gradient[3] = {0, 0, 0};
 };
 
 }  // namespace physpring

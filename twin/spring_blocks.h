@@ -1,34 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// Springs in the order the kernels want them: blocks of 8, nodes near each other in memory, and as
-// far as possible no node twice in a block (a node that was just written need not be waited for).
-// The order is a function of the topology only, so results do not depend on the machine or on
-// threads.
+// Springs in the order the kernels want them: blocks of 4 springs that share their first node. A
+// block reads that node once, sums the forces on it before it adds them to memory, and holds no
+// node twice. Blocks near each other in the object stand near each other in memory. The order is a
+// function of the topology only, so results do not depend on the machine or on threads.
 #ifndef PHYSPRING_TWIN_SPRING_BLOCKS_H_
 #define PHYSPRING_TWIN_SPRING_BLOCKS_H_
 
-#include <array>
 #include <vector>
 
+#include "twin/kernel.h"
 #include "twin/spring_mass_system.h"
 
 namespace physpring {
 
-inline constexpr int kSpringBlock = 8;
-
 template <class Real>
 struct SpringBlocks {
-  // Blocks of 8 springs; the last one is filled up with springs of stiffness 0 between two spare
-  // nodes that stand behind all others, at a distance of 1 m.
-  std::vector<int> a, b;          // (padded springs)
-  std::vector<Real> stiffness;    // k, N/m
-  std::vector<Real> rest_length;  // L, m
-  std::vector<Real> dashpot;      // c, N s/m
-  std::vector<int> spring;        // index in SpringMassSystem::springs; -1 = filling
-  int spare_node = 0;             // the two spare nodes are spare_node and spare_node + 1
+  // Blocks that the springs do not fill are filled with springs of stiffness 0 to a spare node that
+  // stands behind all others.
+  std::vector<int> a;             // (blocks) the node that the springs of a block share
+  std::vector<int> b;             // (4 blocks) the other node of each spring
+  std::vector<Real> stiffness;    // (4 blocks) k, N/m
+  std::vector<Real> rest_length;  // (4 blocks) L, m
+  std::vector<Real> dashpot;      // (4 blocks) c, N s/m
+  std::vector<int> spring;        // (4 blocks) index in SpringMassSystem::springs; -1 = filling
+  int spare_node = 0;
 
-  int size() const { return static_cast<int>(a.size()); }
+  int blocks() const { return static_cast<int>(a.size()); }
+  int size() const { return static_cast<int>(b.size()); }
 
   explicit SpringBlocks(const SpringMassSystem& system);
+
+  SpringView<Real> View() const {
+    return {blocks(), a.data(), b.data(), stiffness.data(), rest_length.data(), dashpot.data()};
+  }
 
   // Takes over the parameters of a system of the same topology.
   void SetParameters(const SpringMassSystem& system);
@@ -40,6 +44,9 @@ struct SpringBlockGradient {
   std::vector<Real> stiffness, rest_length, dashpot;
 
   explicit SpringBlockGradient(int size) : stiffness(size), rest_length(size), dashpot(size) {}
+
+  void Clear() { *this = SpringBlockGradient(static_cast<int>(stiffness.size())); }
+  SpringGradientView<Real> View() { return {stiffness.data(), rest_length.data(), dashpot.data()}; }
 };
 
 }  // namespace physpring

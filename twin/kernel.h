@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The work of a sub-step, as a table of functions: one table for every instruction set it is
+// compiled for, chosen once from what the processor can do (kernel_choice.h). All of them give the
+// same bits as the scalar reference (spring_force.h, node_update.h): the same operations on each
+// spring and node, rounded as IEEE 754 asks, and the same order of additions at each node. So
+// results do not depend on the machine.
+//
+// This header is compiled for every instruction set: it holds plain data only.
+#ifndef PHYSPRING_TWIN_KERNEL_H_
+#define PHYSPRING_TWIN_KERNEL_H_
+
+#include "twin/node_state.h"
+
+namespace physpring {
+
+inline constexpr int kSpringBlock = 4;
+
+// The springs, in blocks of 4 that share their first node (spring_blocks.h).
+template <class Real>
+struct SpringView {
+  int blocks;               // even
+  const int* a;             // (blocks) the node that the springs of a block share
+  const int* b;             // (4 blocks) the other node of each spring
+  const Real* stiffness;    // (4 blocks) k, N/m
+  const Real* rest_length;  // (4 blocks) L, m
+  const Real* dashpot;      // (4 blocks) c, N s/m
+};
+
+// Where the derivatives with respect to the parameters of a SpringView are added to.
+template <class Real>
+struct SpringGradientView {
+  Real* stiffness;
+  Real* rest_length;
+  Real* dashpot;
+};
+
+// What moves the free nodes, besides the springs.
+template <class Real>
+struct NodeView {
+  int nodes;
+  const Real* h_over_mass;  // (nodes) s/kg
+  Real h;                   // sub-step, s
+  Real decay;               // exp(-h drag)
+  NodeForce<Real> kick;     // h g, m/s
+};
+
+// Sums that the derivatives with respect to mass, drag and gravity are made of (node_update.h).
+template <class Real>
+struct NodeGradientView {
+  NodeForce<Real>* mass;     // (nodes)
+  NodeForce<Real>* drag;     // (1)
+  NodeForce<Real>* gravity;  // (1)
+};
+
+template <class Real>
+struct Kernel {
+  const char* name;
+  void (*add_spring_forces)(const SpringView<Real>& springs, const NodeState<Real>* state,
+                            NodeForce<Real>* force);
+  void (*add_spring_forces_adjoint)(const SpringView<Real>& springs, const NodeState<Real>* state,
+                                    const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
+                                    const SpringGradientView<Real>& gradient);
+  void (*update_velocities)(const NodeView<Real>& nodes, const NodeState<Real>* state,
+                            const NodeForce<Real>* force, NodeState<Real>* next);
+  void (*update_velocities_adjoint)(const NodeView<Real>& nodes, const NodeState<Real>* state,
+                                    const NodeState<Real>* next, NodeState<Real>* state_bar,
+                                    NodeForce<Real>* force_bar,
+                                    const NodeGradientView<Real>& gradient);
+  void (*update_positions)(const NodeView<Real>& nodes, const NodeState<Real>* state,
+                           NodeState<Real>* next);
+  void (*update_positions_adjoint)(const NodeView<Real>& nodes, NodeState<Real>* state_bar);
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_KERNEL_H_

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which kernel (kernel.h) computes the sub-steps.
+#ifndef PHYSPRING_TWIN_KERNEL_CHOICE_H_
+#define PHYSPRING_TWIN_KERNEL_CHOICE_H_
+
+#include <string_view>
+
+#include "twin/kernel.h"
+
+namespace physpring {
+
+// The kernel named "scalar" or "avx2"; null where the processor cannot run it.
+template <class Real>
+const Kernel<Real>* FindKernel(std::string_view name);
+
+// The fastest kernel that this processor can run, or the one that the environment variable
+// PHYSPRING_KERNEL names. Throws Error if it names one that cannot run here.
+template <class Real>
+const Kernel<Real>& BestKernel();
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_KERNEL_CHOICE_H_
