@@ -46,8 +46,9 @@ GradientReport CheckGradient(const LossFunction& loss,
     const Estimate numeric = CentralDifference(loss, v.variable, v.step);
     const double size =
         std::max({std::abs(v.derivative), std::abs(numeric.value), floor * largest});
-    const double error = size != 0 ? std::abs(v.derivative - numeric.value) / size : 0;
-    const double doubt = size != 0 ? numeric.doubt / size : 0;
+    const auto relative = [&](double value) { return value == 0 ? 0 : std::abs(value) / size; };
+    const double error = relative(v.derivative - numeric.value);
+    const double doubt = relative(numeric.doubt);
     const bool passed = error <= tolerance && doubt <= tolerance;  // false for NaN, too
     report.passed = report.passed && passed;
     report.worst_error = std::max(report.worst_error, error);
