@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/unseen_points.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
+
+#include "twin/rotation.h"
 
 namespace physpring {
 namespace {
@@ -37,19 +37,6 @@ std::vector<Eigen::Index> NearestKnown(const Points& shape, const Points& start,
       [&](Eigen::Index a, Eigen::Index b) { return distance_squared(a) < distance_squared(b); });
   known.resize(static_cast<std::size_t>(count));
   return known;
-}
-
-// The rotation that takes the columns of `from` (about their mean) nearest to those of `to`. What
-// they leave open (the twist about a straight line, all of it for one point) is not turned: the
-// small multiple of the identity decides there, and changes a determined angle by about 1 %.
-Eigen::Matrix3d FitRotation(const Points& from, const Points& to) {
-  const Eigen::Matrix3d covariance =
-      to * from.transpose() + 0.01 * from.squaredNorm() * Eigen::Matrix3d::Identity();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-  return u * svd.matrixV().transpose();
 }
 
 Eigen::Vector3d MoveWithNeighbours(const Points& shape, const Points& start, Eigen::Index i) {

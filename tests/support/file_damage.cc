@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -57,6 +58,7 @@ void ExpectOneLine(const std::string& path, const std::string& message) {
 }
 
 void Overwrite(const std::string& path, const std::string& bytes) {
+  std::filesystem::remove(path);  // some file systems sync a file that is cut to nothing
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 

@@ -296,7 +296,7 @@ TEST_F(TwinFile, SurvivesRandomChanges) {
   std::mt19937 random(3);
   const Npz sound = arrays_;
   int accepted = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     arrays_ = sound;
     MutateArrays(arrays_, random);
     Overwrite(path_, PackNpz(arrays_, path_));
