@@ -232,6 +232,9 @@ def convert(args):
     print("\n".join(report))
     if args.mass is None:
         note(f"PhysTwin declares no mass, {DEFAULT_MASS} kg is assumed (--mass KG)")
+    unseen = int(np.isnan(case.points[0]).any(axis=1).sum())
+    if unseen > 0:
+        note(f"{unseen} points are not visible in frame 0; the twin has them where PhysTwin does")
     if np.median(case.tracked[:, 2]) < 0:
         note("most points are below the ground: does z point down in this case?")
 

@@ -45,7 +45,10 @@ class Array:
         if not isinstance(self.data, (bytes, bytearray)) or len(self.data) != size:
             raise Error(f"has an array whose bytes do not fill its shape {self.shape}")
         order = "F" if self.fortran else "C"
-        return np.frombuffer(self.data, dtype).reshape(self.shape, order=order).copy()
+        try:
+            return np.frombuffer(self.data, dtype).reshape(self.shape, order=order).copy()
+        except (OverflowError, ValueError):  # too many dimensions, or too large beside an empty one
+            raise Error(f"has an array of shape {self.shape}") from None
 
 
 class _Dtype:

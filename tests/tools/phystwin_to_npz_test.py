@@ -131,6 +131,18 @@ class RecordingTest(Case):
             for name, array in self.convert().items():
                 np.testing.assert_array_equal(array, expected[name])
 
+    def test_case_without_shape_prior_has_no_interior(self):
+        self.data["surface_points"] = self.data["interior_points"] = np.zeros((0, 3))
+        maker.write_case(self.folder, self.data)
+        self.assertEqual(self.convert()["interior"].shape, (0, 3))
+
+    def test_points_not_visible_in_frame_0_are_told(self):
+        self.data["object_visibilities"][0, :2] = False
+        self.data["object_visibilities"][1:, :2] = True
+        self.data["object_motions_valid"][1:, :2] = True
+        maker.write_case(self.folder, self.data)
+        self.assertIn("note: 2 points", self.run_tool()[1])
+
     def test_case_without_controllers(self):
         self.data["controller_points"] = None
         maker.write_case(self.folder, self.data, split=None)
@@ -383,6 +395,13 @@ class BadInputTest(Case):
             rest = {key: value for key, value in self.data.items() if key != name}
             maker.write_pickle(self.folder / "final_data.pkl", rest)
             self.expect_refused("final_data.pkl", f"no array {name}")
+
+    def test_array_of_impossible_shape_is_refused(self):
+        for shape in ((2 ** 70, 0), (1,) * 80, (-1, 3), (2, 3.0), "xy"):
+            with self.assertRaisesRegex(safe_pickle.Error, "shape"):
+                array = safe_pickle.Array()
+                array.__setstate__((1, shape, safe_pickle._Dtype("f4"), False, b""))
+                array.numpy()
 
     def test_visible_point_that_is_not_finite_is_refused(self):
         self.data["object_points"][0, 7] = np.inf
