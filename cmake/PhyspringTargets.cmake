@@ -19,6 +19,10 @@ endfunction()
 # `slow` are left out of the default suite.
 function(physpring_test source)
   cmake_parse_arguments(PARSE_ARGV 1 test "" "" "LIBS;LABELS;SUPPORT")
+  set(properties TIMEOUT 300)
+  if(test_LABELS)
+    list(APPEND properties LABELS "${test_LABELS}")
+  endif()
   string(REGEX REPLACE "\\.cc$" "" name "${source}")
   string(REPLACE "/" "_" name "${name}")
   add_executable(${name} ${source} ${test_SUPPORT})
@@ -27,5 +31,5 @@ function(physpring_test source)
   gtest_discover_tests(${name}
     TEST_PREFIX "${name}."
     DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS "${test_LABELS}" TIMEOUT 300)
+    PROPERTIES ${properties})
 endfunction()
