@@ -7,7 +7,8 @@ option(PHYSPRING_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSani
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE RelWithDebInfo)
 endif()
-set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O3 -g")  # no -DNDEBUG: asserts stay on
+# no -DNDEBUG: asserts stay on; -g1, lines for backtraces, compiles a third faster than -g
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O3 -g1")
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)  # an installed program still finds libmujoco
 
@@ -26,6 +27,6 @@ target_compile_options(physpring_options INTERFACE
 
 if(PHYSPRING_SANITIZE)
   set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_compile_options(physpring_options INTERFACE -O1 ${sanitize})
+  target_compile_options(physpring_options INTERFACE -O1 -g1 ${sanitize})
   target_link_options(physpring_options INTERFACE ${sanitize})
 endif()
