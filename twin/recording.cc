@@ -135,11 +135,11 @@ void ExpectDistinct(const NpzFields& fields, const Recording& recording, const s
   }
 }
 
-std::string WarnOfPlaced(const std::string& path, const std::vector<int>& placed) {
+std::string WarnOfPlaced(const std::string& path, int points, const std::vector<int>& placed) {
   constexpr std::size_t kShown = 5;
   const auto shown = static_cast<std::ptrdiff_t>(std::min(placed.size(), kShown));
-  return fmt::format("{}: {} points are not seen in frame 0 and were placed from neighbours: {}{}",
-                     path, placed.size(), fmt::join(placed.begin(), placed.begin() + shown, ", "),
+  return fmt::format("{}: {} of {} points, not seen in frame 0, placed from neighbours: {}{}", path,
+                     placed.size(), points, fmt::join(placed.begin(), placed.begin() + shown, ", "),
                      placed.size() > kShown ? ", ..." : "");
 }
 
@@ -147,7 +147,8 @@ void SetStart(const NpzFields& fields, const std::string& path, Recording& recor
   recording.start.resize(3, recording.particle_count() + recording.controller_count());
   recording.start << recording.points[0], recording.interior, recording.controllers[0];
   const std::vector<int> placed = PlaceUnseenPoints(recording);
-  if (!placed.empty()) recording.warnings.push_back(WarnOfPlaced(path, placed));
+  if (!placed.empty())
+    recording.warnings.push_back(WarnOfPlaced(path, recording.point_count(), placed));
 
   ExpectDistinct(fields, recording, "points", recording.start);
   if (recording.rest_given) ExpectDistinct(fields, recording, "rest", recording.rest);
