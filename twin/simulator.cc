@@ -171,6 +171,7 @@ void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
             &workspace->force);
     std::swap(*state, workspace->next);
   }
+  PlaceControllers(input, options_.substeps - 1, state);
 }
 
 template <class Real>

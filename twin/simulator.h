@@ -66,7 +66,7 @@ class Simulator {
   // Buffers of a frame; one a thread.
   class Workspace;
 
-  // Advances the state by one frame.
+  // Advances the state by one frame. The controllers' entries are those of the frame's end, too.
   void AdvanceFrame(const FrameInput& input, State* state, Workspace* workspace) const;
 
   // Adjoint of AdvanceFrame. `start`: the state before the frame. `state_bar`: in d loss / d state
