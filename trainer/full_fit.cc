@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/full_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "trainer/start_system.h"
+#include "twin/error.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kSafety = 0.7;                        // of the sub-step
+constexpr int kMostRecordings = 4;                     // that start values are sought on
+constexpr int kMostSpringRecordings = 12;              // that single springs are fitted to
+constexpr std::array<double, 2> kHorizons = {0.3, 1};  // parts of the fit frames
+constexpr std::array<int, 2> kFactorSteps = {6, 14};   // at most, of each horizon
+constexpr int kCommonSteps = 8;
+constexpr int kSpringSteps = 12;
+constexpr double kCheaper = 1.03;  // a larger neighbour count must be better by this factor
+
+// Standard deviations of the prior on the springs' own parts.
+constexpr double kOwnStiffness = 0.5, kOwnDashpot = 0.5, kOwnRestLength = 0.01;
+
+NpzArray Vector(const Eigen::VectorXd& v) {
+  return NpzArray::Doubles({static_cast<std::size_t>(v.size())}, v.data());
+}
+
+std::vector<Episode> Shorten(std::vector<Episode> episodes, double part) {
+  for (Episode& episode : episodes) {
+    episode.frames = std::clamp(static_cast<int>(part * episode.frames), 2, episode.frames);
+  }
+  return episodes;
+}
+
+}  // namespace
+
+FullFit::FullFit(FitData data, const TrainOptions& options)
+    : data_(std::move(data)), options_(options), candidates_(options.neighbours) {
+  const Recording& first = data_.recordings.at(0);
+  if (candidates_.empty()) {
+    candidates_ =
+        first.order.size() > 0 ? std::vector<int>{6, 12, 20} : std::vector<int>{12, 18, 26};
+    // more neighbours than there are particles are all the same
+    const int most = std::max(1, first.particle_count() - 1);
+    for (int& candidate : candidates_) candidate = std::min(candidate, most);
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+  }
+  held_back_ = HoldBack(data_, kMostRecordings);
+  all_ = FitEpisodes(data_, kMostSpringRecordings);
+  state_.score = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(candidates_.size()),
+                                           std::numeric_limits<double>::infinity());
+  StartSystem(0, 8);  // throws where the recording gives no body
+}
+
+SpringMassSystem FullFit::StartSystem(int candidate, double start_substeps) const {
+  const Recording& recording = data_.recordings[0];
+  TopologyOptions topology;
+  topology.max_neighbours = topology.controller_max_neighbours = candidates_[candidate];
+  SpringMassSystem system = MakeStartSystem(recording, topology);
+  ScaleToSubsteps(1 / recording.fps, start_substeps, kSafety, &system);
+  return system;
+}
+
+TrackProblem::Options FullFit::ProblemOptions() const {
+  TrackProblem::Options problem;
+  problem.rollout.single_precision = options_.single_precision;
+  problem.rollout.controller_velocity = options_.controller_velocity;
+  problem.rollout.substeps = options_.substeps;
+  problem.safety = kSafety;
+  problem.threads = options_.threads;
+  return problem;
+}
+
+Parameters FullFit::CommonParameters(const SpringMassSystem& base) const {
+  ParameterOptions options;
+  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = false;
+  options.contact = data_.recordings[0].ground.has_value();
+  return Parameters(base, options);
+}
+
+Parameters FullFit::SpringParameters() const {
+  const SpringMassSystem start = StartSystem(state_.candidate, state_.start_substeps);
+  ParameterOptions options;
+  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = true;
+  options.contact = data_.recordings[0].ground.has_value();
+  return Parameters(CommonParameters(start).Apply(state_.best_x), options);
+}
+
+SpringMassSystem FullFit::CurrentSystem() const {
+  if (state_.stage == Stage::kSprings || state_.stage == Stage::kDone) {
+    return SpringParameters().Apply(state_.x);
+  }
+  const double substeps = state_.start_substeps > 0 ? state_.start_substeps : 8;
+  const SpringMassSystem start = StartSystem(state_.candidate, substeps);
+  return state_.x.size() == 0 ? start : CommonParameters(start).Apply(state_.x);
+}
+
+// Among a few start systems from soft to stiff, the one that predicts the fit frames best.
+double FullFit::SearchStart(int candidate) const {
+  double best = 4, least = std::numeric_limits<double>::infinity();
+  for (double substeps : {2.0, 4.0, 8.0, 16.0, 32.0, 64.0}) {
+    const Parameters parameters = CommonParameters(StartSystem(candidate, substeps));
+    TrackProblem problem(parameters, held_back_.fit, ProblemOptions());
+    const auto r = problem.Residuals(Eigen::VectorXd::Zero(parameters.size()));
+    if (r && r->squaredNorm() < least) {
+      least = r->squaredNorm();
+      best = substeps;
+    }
+  }
+  return best;
+}
+
+double FullFit::HeldBackError(const SpringMassSystem& system) const {
+  double sum = 0;
+  for (const ScoredFrames& scored : held_back_.scored) {
+    RolloutOptions options = ProblemOptions().rollout;
+    if (options.substeps == 0) {
+      options.substeps =
+          StableSubsteps(ComputeStabilityBound(system), 1 / scored.recording->fps, kSafety);
+    }
+    const auto rollout = RollOut(system, {scored.recording, scored.last}, options);
+    if (rollout->diverged()) return std::numeric_limits<double>::infinity();
+    double error = 0;
+    int frames = 0;
+    for (int frame = scored.first; frame < scored.last; ++frame) {
+      const Points& measured = scored.recording->points[frame];
+      double frame_error = 0;
+      int seen = 0;
+      for (int i = 0; i < measured.cols(); ++i) {
+        if (std::isnan(measured(0, i))) continue;
+        frame_error += (rollout->positions()[frame].col(i) - measured.col(i)).norm();
+        ++seen;
+      }
+      if (seen == 0) continue;
+      error += frame_error / seen;
+      ++frames;
+    }
+    if (frames > 0) sum += error / frames;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, held_back_.scored.size()));
+}
+
+LevenbergMarquardtState FullFit::StepFactors(const Parameters& parameters,
+                                             const std::vector<Episode>& episodes,
+                                             int difference_threads) {
+  TrackProblem::Options problem_options = ProblemOptions();
+  problem_options.threads = 1;  // the differences run in parallel
+  TrackProblem problem(parameters, episodes, problem_options);
+  LevenbergMarquardtOptions options;
+  options.threads = difference_threads;
+  LevenbergMarquardtState factors;
+  factors.x = state_.x;
+  factors.damping = state_.damping;
+  factors = LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
+                                   factors, options);
+  state_.x = factors.x;
+  state_.damping = factors.damping;
+  state_.mean_square = factors.mean_square;
+  ++state_.iteration;
+  return factors;
+}
+
+void FullFit::StepChoose() {
+  if (state_.start_substeps == 0) {
+    state_.start_substeps = SearchStart(state_.candidate);
+    state_.horizon = state_.iteration = 0;
+    state_.damping = 1e-2;
+    const Parameters parameters =
+        CommonParameters(StartSystem(state_.candidate, state_.start_substeps));
+    state_.x = Eigen::VectorXd::Zero(parameters.size());
+  }
+  const Parameters parameters =
+      CommonParameters(StartSystem(state_.candidate, state_.start_substeps));
+  const auto factors =
+      StepFactors(parameters, Shorten(held_back_.fit, kHorizons[state_.horizon]), options_.threads);
+  status_ = fmt::format("{} neighbours, start values: {:.3f} mm", candidates_[state_.candidate],
+                        1e3 * std::sqrt(3 * factors.mean_square));
+  if (!factors.converged && state_.iteration < kFactorSteps[state_.horizon]) return;
+  if (++state_.horizon < static_cast<int>(kHorizons.size())) {
+    state_.iteration = 0;
+    return;
+  }
+
+  // this candidate is done: is it the best so far?
+  const int candidate = state_.candidate;
+  state_.score[candidate] = HeldBackError(parameters.Apply(state_.x));
+  status_ = fmt::format("{} neighbours: {:.3f} mm on held-back frames", candidates_[candidate],
+                        1e3 * state_.score[candidate]);
+  const double before = candidate == 0 ? std::numeric_limits<double>::infinity()
+                                       : state_.score.head(candidate).minCoeff();
+  if (candidate == 0 || kCheaper * state_.score[candidate] < before) {
+    state_.best_start = Eigen::VectorXd::Constant(1, state_.start_substeps);
+    state_.best_x = state_.x;
+  }
+  state_.start_substeps = 0;
+  if (++state_.candidate < static_cast<int>(candidates_.size())) return;
+
+  // the first candidate that is as good as the best
+  int chosen = 0;
+  for (int i = 1; i < static_cast<int>(candidates_.size()); ++i) {
+    if (kCheaper * state_.score[i] < state_.score.head(i).minCoeff()) chosen = i;
+  }
+  state_.candidate = chosen;
+  state_.start_substeps = state_.best_start[0];
+  state_.x = state_.best_x;
+  state_.stage = Stage::kCommon;
+  state_.iteration = 0;
+  state_.damping = 1e-2;
+}
+
+void FullFit::StepCommon() {
+  const Parameters parameters =
+      CommonParameters(StartSystem(state_.candidate, state_.start_substeps));
+  const auto factors =
+      StepFactors(parameters, FitEpisodes(data_, kMostRecordings), options_.threads);
+  status_ = fmt::format("{} neighbours, all fit frames: {:.3f} mm", candidates_[state_.candidate],
+                        1e3 * std::sqrt(3 * factors.mean_square));
+  if (!factors.converged && state_.iteration < kCommonSteps) return;
+  state_.best_x = state_.x;
+  state_.stage = Stage::kSprings;
+  state_.x = Eigen::VectorXd::Zero(SpringParameters().size());
+  state_.iteration = 0;
+  state_.damping = 1e-3;
+}
+
+void FullFit::StepSprings() {
+  const Parameters parameters = SpringParameters();
+  TrackProblem::Options problem_options = ProblemOptions();
+  problem_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
+  TrackProblem problem(parameters, all_, problem_options);
+  GaussNewtonOptions options;
+  options.conjugate_gradient_steps = 50;
+  options.precision.resize(parameters.size());
+  options.scale.resize(parameters.size());
+  for (int i = 0; i < parameters.size(); ++i) {
+    double deviation = 3, scale = 30;
+    switch (parameters.kind(i)) {
+      case Parameters::Kind::kGlobal:
+        break;
+      case Parameters::Kind::kStiffness:
+        deviation = kOwnStiffness, scale = 1;
+        break;
+      case Parameters::Kind::kDashpot:
+        deviation = kOwnDashpot, scale = 1;
+        break;
+      case Parameters::Kind::kRestLength:
+        deviation = kOwnRestLength, scale = 100;
+        break;
+    }
+    options.precision[i] = 1 / (deviation * deviation);
+    options.scale[i] = scale;
+  }
+  const GaussNewtonState before{state_.x, state_.damping, state_.mean_square, false};
+  const GaussNewtonState after = GaussNewtonStep(&problem, before, options);
+  state_.x = after.x;
+  state_.damping = after.damping;
+  state_.mean_square = after.mean_square;
+  ++state_.iteration;
+  status_ = fmt::format("single springs: {:.3f} mm", 1e3 * std::sqrt(3 * after.mean_square));
+  const int steps = options_.epochs > 0 ? options_.epochs : kSpringSteps;
+  if (after.converged || state_.iteration >= steps) state_.stage = Stage::kDone;
+}
+
+bool FullFit::Step() {
+  switch (state_.stage) {
+    case Stage::kChoose:
+      StepChoose();
+      return true;
+    case Stage::kCommon:
+      StepCommon();
+      return true;
+    case Stage::kSprings:
+      StepSprings();
+      return true;
+    case Stage::kDone:
+      return false;
+  }
+  return false;
+}
+
+// Shares of the time as measured on recordings of 80 to 500 particles.
+double FullFit::Progress() const {
+  const double candidates = static_cast<double>(candidates_.size());
+  switch (state_.stage) {
+    case Stage::kChoose: {
+      const double within = state_.horizon == 0 ? 0.2 * state_.iteration / kFactorSteps[0]
+                                                : 0.2 + 0.8 * state_.iteration / kFactorSteps[1];
+      return 0.4 * (state_.candidate + within) / candidates;
+    }
+    case Stage::kCommon:
+      return 0.4 + 0.1 * state_.iteration / kCommonSteps;
+    case Stage::kSprings:
+      return 0.5 + 0.5 * state_.iteration / (options_.epochs > 0 ? options_.epochs : kSpringSteps);
+    case Stage::kDone:
+      return 1;
+  }
+  return 0;
+}
+
+std::map<std::string, NpzArray> FullFit::Save() const {
+  const std::array<int, 4> counters = {static_cast<int>(state_.stage), state_.candidate,
+                                       state_.horizon, state_.iteration};
+  const std::array<double, 3> scalars = {state_.start_substeps, state_.damping, state_.mean_square};
+  return {{"train/counters", NpzArray::Ints({counters.size()}, counters.data())},
+          {"train/scalars", NpzArray::Doubles({scalars.size()}, scalars.data())},
+          {"train/x", Vector(state_.x)},
+          {"train/score", Vector(state_.score)},
+          {"train/best_start", Vector(state_.best_start)},
+          {"train/best_x", Vector(state_.best_x)}};
+}
+
+void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
+  const auto get = [&](const std::string& name, int size) {
+    const auto found = arrays.find("train/" + name);
+    if (found == arrays.end())
+      throw Error("cannot resume: the array train/" + name + " is missing");
+    const std::vector<double> values = found->second.ToDoubles();
+    if (size >= 0 && static_cast<int>(values.size()) != size) {
+      throw Error(fmt::format("cannot resume: train/{} has {} values, expected {}", name,
+                              values.size(), size));
+    }
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  };
+  const Eigen::VectorXd counters = get("counters", 4), scalars = get("scalars", 3);
+  state_.stage = static_cast<Stage>(static_cast<int>(counters[0]));
+  state_.candidate = static_cast<int>(counters[1]);
+  state_.horizon = static_cast<int>(counters[2]);
+  state_.iteration = static_cast<int>(counters[3]);
+  state_.start_substeps = scalars[0];
+  state_.damping = scalars[1];
+  state_.mean_square = scalars[2];
+  state_.x = get("x", -1);
+  state_.score = get("score", static_cast<int>(candidates_.size()));
+  state_.best_start = get("best_start", -1);
+  state_.best_x = get("best_x", -1);
+}
+
+Twin FullFit::Result() const {
+  const Recording& recording = data_.recordings[0];
+  Twin twin;
+  TwinLevel level;
+  level.system = CurrentSystem();
+  const int substeps = options_.substeps > 0 ? options_.substeps
+                                             : StableSubsteps(ComputeStabilityBound(level.system),
+                                                              1 / recording.fps, kSafety);
+  level.substeps_per_second = static_cast<int>(std::ceil(substeps * recording.fps));
+  twin.levels.push_back(std::move(level));
+  twin.points = recording.point_count();
+  twin.interior = recording.interior_count();
+  twin.order = recording.order;
+  twin.controller_velocity = options_.controller_velocity;
+  twin.fps = recording.fps;
+  twin.gravity = recording.gravity;
+  twin.seed = options_.seed;
+  return twin;
+}
+
+}  // namespace physpring

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matrix-free Gauss-Newton (Levenberg-Marquardt) for many parameters: minimises
+//   |r(x)|^2 / variance + sum_i precision_i x_i^2.
+// Each step solves (J^T J / variance + P + damping D) s = -gradient by conjugate gradients. J v
+// comes from a difference of residuals along v (one rollout), J^T u from the adjoint.
+#ifndef PHYSPRING_TRAINER_GAUSS_NEWTON_H_
+#define PHYSPRING_TRAINER_GAUSS_NEWTON_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+namespace physpring {
+
+// A model with residuals r(x), linearised at the point where it was last evaluated by Linearise.
+class LeastSquares {
+ public:
+  virtual ~LeastSquares() = default;
+  // Residuals at x; nothing where the model cannot be evaluated.
+  virtual std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) = 0;
+  // Takes x as the point of linearisation and returns r(x).
+  virtual std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) = 0;
+  virtual Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) = 0;
+  virtual Eigen::VectorXd JacobianTransposedTimes(const Eigen::VectorXd& u) = 0;
+};
+
+struct GaussNewtonState {
+  Eigen::VectorXd x;
+  double damping = 1e-2;   // relative to `scale`
+  double mean_square = 0;  // of the residuals at x
+  bool converged = false;
+};
+
+struct GaussNewtonOptions {
+  int conjugate_gradient_steps = 20;
+  double longest_step = 0.7;  // no entry of x moves further in one step
+  Eigen::VectorXd precision;  // P, of the prior
+  Eigen::VectorXd scale;      // D: how strongly each entry acts, relative to the others
+};
+
+// One step, with r^2's mean at the start as variance. Returns the new state (the old x with
+// `converged` where no trial was better).
+GaussNewtonState GaussNewtonStep(LeastSquares* problem, const GaussNewtonState& state,
+                                 const GaussNewtonOptions& options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_GAUSS_NEWTON_H_

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What training moves: an unconstrained vector, and the map from it to a spring-mass system.
+//   stiffness_e   = base_e exp(global + class(e) + own_e)     global: apart for controller springs
+//   dashpot_e     = base_e exp(global + class(e) + own_e)
+//   rest_length_e = base_e exp(own_e)
+//   drag          = base exp(.)
+//   restitution   = 1 / (1 + exp(-.)),  friction = 2 / (1 + exp(-.))
+// Zero is the base system. Springs of about the same rest length are one class: on a regular mesh
+// the springs along, across and diagonal, which in a homogeneous body are alike. The `own` parts
+// are deviations of single springs, held small by the prior.
+#ifndef PHYSPRING_TRAINER_PARAMETERS_H_
+#define PHYSPRING_TRAINER_PARAMETERS_H_
+
+#include <vector>
+
+#include "twin/simulator.h"
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+struct ParameterOptions {
+  bool spring_stiffness = true;  // single springs, else one factor for all
+  bool spring_dashpot = true;    // single dashpots, else one factor for all
+  bool spring_rest_length = false;
+  bool contact = false;  // restitution and friction of the ground
+};
+
+class Parameters {
+ public:
+  Parameters(const SpringMassSystem& base, const ParameterOptions& options);
+
+  int size() const { return size_; }
+  const SpringMassSystem& base() const { return base_; }
+  // What each entry is: 0 global, 1 own stiffness, 2 own dashpot, 3 own rest length.
+  enum class Kind { kGlobal, kStiffness, kDashpot, kRestLength };
+  Kind kind(int i) const;
+
+  SpringMassSystem Apply(const Eigen::VectorXd& values) const;
+
+  // d loss / d values, from the derivatives with respect to the system Apply(values).
+  Eigen::VectorXd Adjoint(const SpringMassSystem& system, const SystemGradient& gradient) const;
+
+ private:
+  bool IsControllerSpring(int e) const;
+  int ClassStiffness(int e) const { return kGlobals + length_class_[e]; }
+  int ClassDashpot(int e) const { return kGlobals + classes_ + length_class_[e]; }
+
+  SpringMassSystem base_;
+  ParameterOptions options_;
+  int springs_;
+  std::vector<int> length_class_;  // of each spring
+  int classes_ = 0;
+  int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
+  int size_;
+  // offsets of the global parts
+  static constexpr int kStiffness = 0, kControllerStiffness = 1, kDashpot = 2,
+                       kControllerDashpot = 3, kDrag = 4, kRestitution = 5, kFriction = 6,
+                       kGlobals = 7;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_PARAMETERS_H_

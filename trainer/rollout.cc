@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/rollout.h"
+
+#include <cmath>
+#include <utility>
+
+#include "twin/environment.h"
+
+namespace physpring {
+namespace {
+
+// A body that moved this far has diverged, m.
+constexpr double kFarAway = 1e3;
+
+template <class Real>
+class RolloutIn : public Rollout {
+ public:
+  RolloutIn(const SpringMassSystem& system, const Episode& episode, const RolloutOptions& options)
+      : recording_(*episode.recording),
+        growth_limit_(options.growth_limit),
+        gradient_(system),
+        simulator_(system, EnvironmentOf(recording_),
+                   {1 / recording_.fps, options.substeps, options.controller_velocity}),
+        workspace_(simulator_) {
+    states_.push_back(
+        simulator_.MakeState(recording_.start.leftCols(system.node_count()), recording_.velocity));
+    positions_.push_back(simulator_.Positions(states_[0]));
+    for (int frame = 1; frame < episode.frames; ++frame) {
+      NodeStates<Real> state = states_.back();
+      simulator_.AdvanceFrame(Input(frame), &state, &workspace_);
+      Points position = simulator_.Positions(state);
+      if (!position.allFinite() || position.cwiseAbs().maxCoeff() > kFarAway) {
+        diverged_ = true;
+        break;
+      }
+      positions_.push_back(std::move(position));
+      states_.push_back(std::move(state));
+    }
+  }
+
+  RolloutAdjoint Adjoint(const std::vector<Points>& position_bar) override {
+    RolloutAdjoint result{gradient_, {}, 0};
+    NodeStates<Real> state_bar(states_[0].size());
+    double injected_squared = 0;
+    for (std::size_t frame = states_.size() - 1; frame >= 1; --frame) {
+      injected_squared += position_bar[frame].squaredNorm();
+      const double norm = Add(position_bar[frame], &state_bar);
+      if (norm > growth_limit_ * std::sqrt(injected_squared)) {
+        ++result.cuts;
+        state_bar.assign(state_bar.size(), {});
+        Add(position_bar[frame], &state_bar);
+      }
+      simulator_.AdvanceFrameAdjoint(states_[frame - 1], Input(static_cast<int>(frame)), &state_bar,
+                                     &result.gradient, &workspace_);
+    }
+    result.velocity_bar = simulator_.Velocities(state_bar);
+    return result;
+  }
+
+ private:
+  FrameInput Input(int frame) const {
+    return {recording_.controllers[frame - 1], recording_.controllers[frame], {}};
+  }
+
+  // Adds to the positions' part of state_bar; returns the norm of the sum.
+  static double Add(const Points& position_bar, NodeStates<Real>* state_bar) {
+    double norm_squared = 0;
+    for (int i = 0; i < position_bar.cols(); ++i) {
+      for (int j = 0; j < 3; ++j) {
+        Real& entry = (*state_bar)[i].x[j];
+        entry += static_cast<Real>(position_bar(j, i));
+        norm_squared += static_cast<double>(entry) * static_cast<double>(entry);
+      }
+    }
+    return std::sqrt(norm_squared);
+  }
+
+  const Recording& recording_;
+  double growth_limit_;
+  SystemGradient gradient_;  // zero, of the right shapes
+  Simulator<Real> simulator_;
+  typename Simulator<Real>::Workspace workspace_;
+  std::vector<NodeStates<Real>> states_;  // at each frame
+};
+
+}  // namespace
+
+std::unique_ptr<Rollout> RollOut(const SpringMassSystem& system, const Episode& episode,
+                                 const RolloutOptions& options) {
+  if (options.single_precision) return std::make_unique<RolloutIn<float>>(system, episode, options);
+  return std::make_unique<RolloutIn<double>>(system, episode, options);
+}
+
+}  // namespace physpring

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef PHYSPRING_TRAINER_TRAIN_OPTIONS_H_
+#define PHYSPRING_TRAINER_TRAIN_OPTIONS_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace physpring {
+
+struct TrainOptions {
+  enum class Method { kFull, kTwoStage };
+  Method method = Method::kFull;
+  std::vector<int> neighbours;  // candidates for the neighbour count; empty: chosen automatically
+  int epochs = 0;               // of the last stage; 0: the method's default
+  int substeps = 0;             // a frame; 0: from the stability bound
+  bool single_precision = false;
+  bool controller_velocity = true;  // dashpots feel the controllers' velocity
+  int threads = 1;
+  std::uint64_t seed = 0;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_TRAIN_OPTIONS_H_
