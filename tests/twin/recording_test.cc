@@ -22,8 +22,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Numbers that are exact in float32, all different.
 Points MakePoints(Eigen::Index count, double first) {
-  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(3 * count, first, first + 1);
-  return values.cast<float>().cast<double>().reshaped(3, count);
+  Points points(3, count);
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    points.data()[i] = first + 0.125 * static_cast<double>(i);
+  }
+  return points;
 }
 
 // 4 frames of 3 points, 1 interior particle and 1 controller: every array that there can be, and
