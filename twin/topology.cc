@@ -75,7 +75,7 @@ std::vector<int> Groups(int nodes, const Springs& springs) {
   return group;
 }
 
-// Distance of each node to its nearest neighbour; throws where two coincide.
+// The greatest distance of a node to its nearest neighbour; throws where two coincide.
 double WidestSpacing(const Points& nodes, const std::string& where) {
   const NeighbourSearch search(nodes);
   double widest = 0;
@@ -122,6 +122,19 @@ void JoinGroups(const Points& nodes, double widest_spacing, const std::string& w
   }
 }
 
+void CheckControllers(const Points& nodes, const Points& controllers, const std::string& where) {
+  const NeighbourSearch search(nodes);
+  for (int c = 0; c < controllers.cols(); ++c) {
+    for (const Neighbour& near : search.Nearest(controllers.col(c), 1)) {
+      if (near.distance >= kCoincident) continue;
+      throw Error(
+          fmt::format("{}: controller {} and particle {} are at the same place; keep one of "
+                      "them",
+                      where, c, near.index));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::array<int, 2>> BuildSprings(const Points& position, int controllers,
@@ -129,9 +142,10 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
                                              const TopologyOptions& options,
                                              const std::string& where) {
   const int nodes = static_cast<int>(position.cols()) - controllers;
-  if (nodes + controllers < 2) {
+  if (nodes < 1 || nodes + controllers < 2) {
     throw Error(
-        fmt::format("{}: {} particle(s) and {} controller(s) give no spring; need at least 2",
+        fmt::format("{}: {} particle(s) and {} controller(s) give no spring; needed are two "
+                    "particles, or one and a controller",
                     where, nodes, controllers));
   }
   const bool rod = order.size() > 0;
@@ -146,12 +160,14 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
   }
   JoinGroups(free, widest, where, &springs);
   const Points hands = searched.rightCols(controllers);
+  CheckControllers(free, hands, where);
   JoinNearest(free, hands, nodes, options.controller_radius, options.controller_max_neighbours,
               &springs);
   if (springs.empty()) {
     throw Error(
-        fmt::format("{}: no two particles are joined; the search radius of {} m is too small",
-                    where, options.radius));
+        fmt::format("{}: no controller is joined to the particle; the search radius for "
+                    "controllers, {} m, is too small",
+                    where, options.controller_radius));
   }
   return {springs.begin(), springs.end()};
 }

@@ -27,9 +27,9 @@ struct TopologyOptions {
 // controllers last. With `order` (arc length of nodes and controllers, m; may be empty) a node's
 // neighbours are the max_neighbours / 2 next ones on either side, and distances are taken along the
 // rod. Groups of nodes that the search leaves apart are joined where they are nearest.
-// Throws Error, beginning with `where`, if there is nothing to join, if two nodes coincide, or if
-// two groups are so far apart that they cannot be one object (more than 5 times the greatest
-// distance of a node to its nearest neighbour).
+// Throws Error, beginning with `where`, if there is nothing to join, if two nodes or a controller
+// and a node coincide, or if two groups are so far apart that they cannot be one object (more than
+// 5 times the greatest distance of a node to its nearest neighbour).
 std::vector<std::array<int, 2>> BuildSprings(const Points& position, int controllers,
                                              const Eigen::VectorXd& order,
                                              const TopologyOptions& options,
