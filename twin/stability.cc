@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/stability.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,34 +9,51 @@
 namespace physpring {
 namespace {
 
-// Largest eigenvalue of M^-1/2 L M^-1/2, L the Laplacian with weights w of the springs; controllers
-// do not move.
+// (L x)_i = sum over the springs at i of w (x_i - x_j); controllers stay at 0.
+Eigen::VectorXd ApplyLaplacian(const SpringMassSystem& system, const Eigen::VectorXd& weight,
+                               const Eigen::VectorXd& x) {
+  const int nodes = system.node_count();
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(nodes);
+  for (int e = 0; e < system.spring_count(); ++e) {
+    const auto [a, b] = system.springs[e];
+    const double tension = weight[e] * ((a < nodes ? x[a] : 0.0) - (b < nodes ? x[b] : 0.0));
+    if (a < nodes) result[a] += tension;
+    if (b < nodes) result[b] -= tension;
+  }
+  return result;
+}
+
+// Upper estimate of the largest eigenvalue of M^-1/2 L M^-1/2, L the Laplacian with weights w of
+// the springs, by Lanczos' method: the largest eigenvalue of the projection onto a Krylov space,
+// plus its residual.
 double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& weight) {
   const int nodes = system.node_count();
+  const int steps = std::min(nodes, 80);
   const Eigen::VectorXd inverse_root = system.mass.cwiseSqrt().cwiseInverse();
   // a start vector without symmetry, the same each time
-  Eigen::VectorXd q(nodes);
+  Eigen::VectorXd q(nodes), previous = Eigen::VectorXd::Zero(nodes);
   for (int i = 0; i < nodes; ++i) q[i] = 1 + std::sin(12.9898 * (i + 1) * (i + 1));
   q.normalize();
-  double eigenvalue = 0;
-  for (int iteration = 0; iteration < 200; ++iteration) {
+  Eigen::VectorXd diagonal(steps), beside(steps);  // of the projection
+  int size = 0;
+  for (;;) {
     const Eigen::VectorXd x = inverse_root.cwiseProduct(q);
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(nodes);
-    for (int e = 0; e < system.spring_count(); ++e) {
-      const auto [a, b] = system.springs[e];
-      const double tension = weight[e] * ((a < nodes ? x[a] : 0.0) - (b < nodes ? x[b] : 0.0));
-      if (a < nodes) force[a] += tension;
-      if (b < nodes) force[b] -= tension;
-    }
-    q = inverse_root.cwiseProduct(force);
-    const double next = q.norm();
-    if (next == 0) return 0;
-    q /= next;
-    const bool settled = std::abs(next - eigenvalue) < 1e-4 * next;
-    eigenvalue = next;
-    if (settled && iteration > 10) break;
+    Eigen::VectorXd next = inverse_root.cwiseProduct(ApplyLaplacian(system, weight, x));
+    diagonal[size] = q.dot(next);
+    next -= diagonal[size] * q;
+    if (size > 0) next -= beside[size - 1] * previous;
+    beside[size] = next.norm();
+    ++size;
+    // no residual: the space holds the eigenvectors
+    if (size == steps || beside[size - 1] <= 1e-12 * diagonal.head(size).maxCoeff()) break;
+    previous = q;
+    q = next / beside[size - 1];
   }
-  return eigenvalue;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> projection;
+  projection.computeFromTridiagonal(diagonal.head(size), beside.head(size - 1));
+  const double residual =
+      beside[size - 1] * std::abs(projection.eigenvectors()(size - 1, size - 1));
+  return std::max(0.0, projection.eigenvalues()[size - 1] + residual);
 }
 
 }  // namespace
