@@ -17,9 +17,12 @@ struct Float {
   using Quad = __m128;
   static constexpr int kBlocks = 2;
 
-  static V Set(double value) { return _mm256_set1_ps(static_cast<float>(value)); }
   static V Sqrt(V x) { return _mm256_sqrt_ps(x); }
-  static V Max(V x, V y) { return _mm256_max_ps(y, x); }  // x where one is not a number
+  static V Inverse(V length) {
+    const V shortest = _mm256_set1_ps(static_cast<float>(kShortest));
+    const V has_direction = _mm256_cmp_ps(length, shortest, _CMP_GE_OQ);
+    return _mm256_and_ps(has_direction, _mm256_set1_ps(1) / length);
+  }
   static V Load(const float* p) { return _mm256_loadu_ps(p); }
   static void Store(V x, float* p) { _mm256_storeu_ps(p, x); }
   static Quad SetQuad(float value) { return _mm_set1_ps(value); }
@@ -116,9 +119,11 @@ struct Double {
   using Quad = __m256d;
   static constexpr int kBlocks = 1;
 
-  static V Set(double value) { return _mm256_set1_pd(value); }
   static V Sqrt(V x) { return _mm256_sqrt_pd(x); }
-  static V Max(V x, V y) { return _mm256_max_pd(y, x); }  // x where one is not a number
+  static V Inverse(V length) {
+    const V has_direction = _mm256_cmp_pd(length, _mm256_set1_pd(kShortest), _CMP_GE_OQ);
+    return _mm256_and_pd(has_direction, _mm256_set1_pd(1) / length);
+  }
   static V Load(const double* p) { return _mm256_loadu_pd(p); }
   static void Store(V x, double* p) { _mm256_storeu_pd(p, x); }
   static Quad SetQuad(double value) { return _mm256_set1_pd(value); }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/spring_force.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "twin/spring_law.h"
@@ -12,9 +11,8 @@ namespace {
 template <class Real>
 struct OneLane {
   using V = Real;
-  static V Set(double value) { return static_cast<Real>(value); }
   static V Sqrt(V x) { return std::sqrt(x); }
-  static V Max(V x, V y) { return std::max(x, y); }
+  static V Inverse(V length) { return length >= Real(kShortest) ? 1 / length : 0; }
 };
 
 template <class Real>

@@ -4,7 +4,7 @@
 //   d = x_a - x_b,  l = |d|,  n = d / l,  u = v_a - v_b
 //   F = k (l - L) + c (u . n),   force on b: F n,   force on a: -F n
 //
-// `Lanes` says what a V is (a number, or a vector of numbers) and gives Set, Sqrt and Max. It must
+// `Lanes` says what a V is (a number, or a vector of numbers) and gives Sqrt and Inverse. It must
 // be a type of an anonymous namespace: then what is compiled from this header for one instruction
 // set never stands in for what is compiled for another.
 #ifndef PHYSPRING_TWIN_SPRING_LAW_H_
@@ -12,7 +12,8 @@
 
 namespace physpring {
 
-// Shorter than this a spring has no direction, and no force [m].
+// Shorter than this a spring has no direction, no force, and no derivatives [m]: Lanes::Inverse(l)
+// is 1 / l from here on and 0 below.
 inline constexpr double kShortest = 1e-9;
 
 template <class Lanes>
@@ -22,7 +23,7 @@ struct SpringLaw {
   V d[3], u[3];
 
   // Set by Evaluate.
-  V inverse;  // 1 / l
+  V inverse;  // 1 / l, or 0 if l < kShortest
   V rate;     // u . n, of change of the length
   V stretch;  // l - L
   V scale;    // F / l: the force on b is scale d
@@ -30,8 +31,8 @@ struct SpringLaw {
   static V Dot(const V* p, const V* q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
 
   void Evaluate() {
-    const V length = Lanes::Max(Lanes::Sqrt(Dot(d, d)), Lanes::Set(kShortest));
-    inverse = Lanes::Set(1) / length;
+    const V length = Lanes::Sqrt(Dot(d, d));
+    inverse = Lanes::Inverse(length);
     rate = Dot(d, u) * inverse;
     stretch = length - L;
     scale = (k * stretch + c * rate) * inverse;
