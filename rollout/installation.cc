@@ -13,6 +13,12 @@
 #include "rollout/mujoco_log.h"
 #include "twin/error.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// Mesa never frees what OSMesaMakeCurrent allocates.
+extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
+const char* __lsan_default_suppressions() { return "leak:libOSMesa"; }  // NOLINT
+#endif
+
 namespace physpring {
 namespace {
 
