@@ -64,7 +64,7 @@ double ReadPositive(NpzFields& fields, const std::string& name) {
 Eigen::Vector4d ReadGround(NpzFields& fields) {
   const Eigen::Vector4d plane = fields.Vector("ground", "4");
   const double length = plane.head<3>().stableNorm();
-  const Eigen::Vector4d unit = plane / length;
+  Eigen::Vector4d unit = plane / length;
   if (length > 0 && unit.allFinite()) return unit;
   fields.Fail("ground", fmt::format("holds the normal ({}, {}, {}), expected one that is not zero",
                                     plane[0], plane[1], plane[2]));
