@@ -22,6 +22,8 @@ constexpr std::array<double, 2> kHorizons = {0.3, 1};  // parts of the fit frame
 constexpr std::array<int, 2> kFactorSteps = {6, 14};   // at most, of each horizon
 constexpr int kCommonSteps = 8;
 constexpr int kSpringSteps = 12;
+// Sub-steps a second, at most (PhysTwin's number): no stiffness is taken that would need more.
+constexpr double kMostSubsteps = 20000;
 constexpr double kCheaper = 1.03;  // a larger neighbour count must be better by this factor
 
 // Standard deviations of the prior on the springs' own parts.
@@ -73,6 +75,7 @@ TrackProblem::Options FullFit::ProblemOptions() const {
   problem.rollout.controller_velocity = options_.controller_velocity;
   problem.rollout.substeps = options_.substeps;
   problem.safety = kSafety;
+  problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / data_.recordings[0].fps));
   problem.threads = options_.threads;
   return problem;
 }

@@ -20,7 +20,8 @@ double Sigmoid(double x, double top) { return top / (1 + std::exp(-x)); }
 // where that gives many classes (an irregular mesh), equally filled ones.
 std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
   constexpr double kJump = 1.03;
-  constexpr int kMostClasses = 12;
+  constexpr int kMostClasses = 10;
+  constexpr int kEqualClasses = 6;
   const int springs = static_cast<int>(length.size());
   std::vector<int> sorted(springs), length_class(springs);
   std::iota(sorted.begin(), sorted.end(), 0);
@@ -33,7 +34,7 @@ std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
   }
   if (last >= kMostClasses || last == 0) {
     for (int i = 0; i < springs; ++i) {
-      length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * 8 / springs);
+      length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * kEqualClasses / springs);
     }
   }
   return length_class;
@@ -46,8 +47,8 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       options_(options),
       springs_(base.spring_count()),
       length_class_(LengthClasses(base.rest_length)),
-      classes_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
-      size_(kGlobals + 2 * classes_) {
+      classes_(options.contact ? kFriction + 1 : kDrag + 1),
+      size_(classes_ + 1 + *std::max_element(length_class_.begin(), length_class_.end())) {
   const auto add = [this](bool wanted, int* offset) {
     if (!wanted) return;
     *offset = size_;
@@ -80,8 +81,7 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
     const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
     system.stiffness[e] *= std::exp(values[hand ? kControllerStiffness : kStiffness] +
                                     values[ClassStiffness(e)] + own_stiffness);
-    system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
-                                  values[ClassDashpot(e)] + own_dashpot);
+    system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] + own_dashpot);
     if (rest_length_ >= 0) system.rest_length[e] *= std::exp(values[rest_length_ + e]);
   }
   system.drag *= std::exp(values[kDrag]);
@@ -98,14 +98,13 @@ Eigen::VectorXd Parameters::Adjoint(const SpringMassSystem& system,
   Eigen::VectorXd bar = Eigen::VectorXd::Zero(size_);
   for (int e = 0; e < springs_; ++e) {
     const bool hand = IsControllerSpring(e);
-    // forward: y = base exp(global + class + own), so y_bar y is the derivative with respect to
+    // forward: y = base exp(sum), so y_bar y is the derivative with respect to
     // each
     const double stiffness_bar = gradient.stiffness[e] * system.stiffness[e];
     const double dashpot_bar = gradient.dashpot[e] * system.dashpot[e];
     bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
     bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;
     bar[ClassStiffness(e)] += stiffness_bar;
-    bar[ClassDashpot(e)] += dashpot_bar;
     if (stiffness_ >= 0) bar[stiffness_ + e] = stiffness_bar;
     if (dashpot_ >= 0) bar[dashpot_ + e] = dashpot_bar;
     if (rest_length_ >= 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What training moves: an unconstrained vector, and the map from it to a spring-mass system.
 //   stiffness_e   = base_e exp(global + class(e) + own_e)     global: apart for controller springs
-//   dashpot_e     = base_e exp(global + class(e) + own_e)
+//   dashpot_e     = base_e exp(global + own_e)
 //   rest_length_e = base_e exp(own_e)
 //   drag          = base exp(.)
 //   restitution   = 1 / (1 + exp(-.)),  friction = 2 / (1 + exp(-.))
@@ -42,20 +42,18 @@ class Parameters {
 
  private:
   bool IsControllerSpring(int e) const;
-  int ClassStiffness(int e) const { return kGlobals + length_class_[e]; }
-  int ClassDashpot(int e) const { return kGlobals + classes_ + length_class_[e]; }
+  int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
 
   SpringMassSystem base_;
   ParameterOptions options_;
   int springs_;
-  std::vector<int> length_class_;  // of each spring
-  int classes_ = 0;
+  std::vector<int> length_class_;                         // of each spring
+  int classes_;                                           // offset of the classes' stiffness
   int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
   int size_;
-  // offsets of the global parts
+  // offsets of the global parts; restitution and friction only where wanted
   static constexpr int kStiffness = 0, kControllerStiffness = 1, kDashpot = 2,
-                       kControllerDashpot = 3, kDrag = 4, kRestitution = 5, kFriction = 6,
-                       kGlobals = 7;
+                       kControllerDashpot = 3, kDrag = 4, kRestitution = 5, kFriction = 6;
 };
 
 }  // namespace physpring

@@ -33,12 +33,13 @@ TrackProblem::TrackProblem(const Parameters& parameters, std::vector<Episode> ep
   }
 }
 
-int TrackProblem::Substeps(const SpringMassSystem& system, double safety, int least) const {
+int TrackProblem::Substeps(const SpringMassSystem& system) const {
   if (options_.rollout.substeps > 0) return options_.rollout.substeps;
   const StabilityBound bound = ComputeStabilityBound(system);
-  int substeps = least;
+  int substeps = 1;
   for (const Episode& episode : episodes_) {
-    substeps = std::max(substeps, StableSubsteps(bound, 1 / episode.recording->fps, safety));
+    substeps =
+        std::max(substeps, StableSubsteps(bound, 1 / episode.recording->fps, options_.safety));
   }
   return substeps > options_.most_substeps ? 0 : substeps;
 }
@@ -70,14 +71,13 @@ std::optional<Eigen::VectorXd> TrackProblem::RollOutAll(
 }
 
 std::optional<Eigen::VectorXd> TrackProblem::Residuals(const Eigen::VectorXd& x) {
-  const SpringMassSystem system = parameters_.Apply(x);
-  return RollOutAll(x, Substeps(system, 0.95, Substeps(system, options_.safety, 1)), nullptr);
+  return RollOutAll(x, Substeps(parameters_.Apply(x)), nullptr);
 }
 
 std::optional<Eigen::VectorXd> TrackProblem::Linearise(const Eigen::VectorXd& x) {
   x_ = x;
   system_ = parameters_.Apply(x);
-  substeps_ = Substeps(system_, options_.safety, 1);
+  substeps_ = Substeps(system_);
   auto residuals = RollOutAll(x, substeps_, &rollouts_);
   if (residuals) r_ = *residuals;
   return residuals;

@@ -18,7 +18,7 @@ class TrackProblem : public LeastSquares {
   struct Options {
     RolloutOptions rollout;    // substeps: 0 = from the stability bound
     double safety = 0.7;       // sub-step as a part of the largest stable one
-    int most_substeps = 2000;  // a frame; a stiffer system counts as one that cannot be evaluated
+    int most_substeps = 2000;  // a frame; a stiffer system cannot be evaluated
     int threads = 1;
   };
 
@@ -29,8 +29,8 @@ class TrackProblem : public LeastSquares {
   Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) override;
   Eigen::VectorXd JacobianTransposedTimes(const Eigen::VectorXd& u) override;
 
-  // Sub-steps a frame at x, at least `least`; 0 if more than most_substeps would be needed.
-  int Substeps(const SpringMassSystem& system, double safety, int least) const;
+  // Sub-steps a frame for the system; 0 if more than most_substeps would be needed.
+  int Substeps(const SpringMassSystem& system) const;
 
   // How often the adjoint was cut in the last JacobianTransposedTimes.
   int cuts() const { return cuts_; }

@@ -16,6 +16,7 @@ struct TrainOptions {
   int substeps = 0;             // a frame; 0: from the stability bound
   bool single_precision = false;
   bool controller_velocity = true;  // dashpots feel the controllers' velocity
+  bool self_collision = false;      // particles collide with each other (two-stage only)
   int threads = 1;
   std::uint64_t seed = 0;
 };
