@@ -21,13 +21,6 @@ void AddX(const Eigen::Matrix<Real, 3, 1>& value, NodeState<Real>* node) {
   for (int j = 0; j < 3; ++j) node->x[j] += value[j];
 }
 
-template <class Real>
-Eigen::Matrix<Real, 3, 3> Cross(const Eigen::Matrix<Real, 3, 1>& w) {
-  Eigen::Matrix<Real, 3, 3> m;
-  m << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
-  return m;
-}
-
 }  // namespace
 
 template <class Real>
@@ -188,31 +181,51 @@ typename Contact<Real>::Touch Contact<Real>::GroundTouch(const Vector& x) const 
 }
 
 template <class Real>
+typename Contact<Real>::Vector Contact<Real>::Offset(const PlacedGeom& geom, const Vector& x) {
+  const Vector local = geom.rotation.transpose() * (x - geom.position);
+  return local - local.cwiseMax(-geom.half_size).cwiseMin(geom.half_size);
+}
+
+template <class Real>
 typename Contact<Real>::Touch Contact<Real>::GeomTouch(const PlacedGeom& geom, const Vector& x) {
   Touch touch;
+  touch.geom = &geom;
   const Vector arm = x - geom.position;
-  const Vector local = geom.rotation.transpose() * arm;
-  // offset from the nearest point of the box, zero along the axes within it
-  const Vector offset = local - local.cwiseMax(-geom.half_size).cwiseMin(geom.half_size);
+  const Vector offset = Offset(geom, x);
   const Real distance = offset.norm();
-  Vector normal;
   if (distance > 0) {
-    normal = offset / distance;
-    Vector outside;
-    for (int j = 0; j < 3; ++j) outside[j] = offset[j] != 0 ? Real(1) : Real(0);
-    const Eigen::Matrix<Real, 3, 3> projector = outside.asDiagonal();
-    touch.normal_x = geom.rotation * (projector - normal * normal.transpose()) / distance *
-                     geom.rotation.transpose();
+    touch.normal = geom.rotation * offset / distance;
     touch.gap = distance - geom.radius;
   } else {  // inside the box: towards the nearest face
+    const Vector local = geom.rotation.transpose() * arm;
     int axis = 0;
     touch.gap = (local.cwiseAbs() - geom.half_size).maxCoeff(&axis) - geom.radius;
-    normal = Vector::Unit(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
+    touch.normal = geom.rotation.col(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
   }
-  touch.normal = geom.rotation * normal;
   touch.surface_velocity = geom.velocity + geom.angular_velocity.cross(arm);
-  touch.surface_velocity_x = Cross(geom.angular_velocity);
   return touch;
+}
+
+template <class Real>
+typename Contact<Real>::Vector Contact<Real>::GeomTouchAdjoint(const PlacedGeom& geom,
+                                                               const Vector& x,
+                                                               const Vector& normal_bar,
+                                                               const Vector& surface_velocity_bar) {
+  // forward: surface_velocity = velocity + angular_velocity x arm
+  Vector x_bar = surface_velocity_bar.cross(geom.angular_velocity);
+  // forward: normal = rotation offset / |offset|
+  const Vector offset = Offset(geom, x);
+  const Real distance = offset.norm();
+  if (distance > 0) {
+    const Vector n = offset / distance;
+    const Vector n_bar = geom.rotation.transpose() * normal_bar;
+    Vector offset_bar = (n_bar - n.dot(n_bar) * n) / distance;
+    for (int j = 0; j < 3; ++j) {
+      if (offset[j] == 0) offset_bar[j] = 0;  // within the box it stays 0
+    }
+    x_bar += geom.rotation * offset_bar;
+  }
+  return x_bar;
 }
 
 template <class Real>
@@ -259,10 +272,10 @@ void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, const Pairs& pai
       Vector u_bar = Vector::Zero(), n_bar = Vector::Zero();
       ImpactAdjoint<Real>(touch->velocity_before - touch->surface_velocity, touch->normal,
                           laws_.surface, v_bar, &u_bar, &n_bar, &gradient->laws.surface);
-      const Vector surface_velocity_bar = v_bar - u_bar;
-      AddX<Real>(touch->normal_x.transpose() * n_bar +
-                     touch->surface_velocity_x.transpose() * surface_velocity_bar,
-                 &gradient->state[i]);
+      if (touch->geom) {
+        AddX(GeomTouchAdjoint(*touch->geom, X(state[i]), n_bar, v_bar - u_bar),
+             &gradient->state[i]);
+      }
       v_bar = u_bar;
     }
   }

@@ -74,18 +74,22 @@ class Contact {
     Eigen::Matrix<Real, 3, 3> rotation;
     Vector velocity, angular_velocity;
   };
-  // One impact of a node on a surface.
+  // One impact of a node on the ground (geom = null) or a geom.
   struct Touch {
     Vector normal;
     Real gap;
     Vector surface_velocity = Vector::Zero();
-    Eigen::Matrix<Real, 3, 3> normal_x = Eigen::Matrix<Real, 3, 3>::Zero();  // d normal / d x
-    Eigen::Matrix<Real, 3, 3> surface_velocity_x = Eigen::Matrix<Real, 3, 3>::Zero();
+    const PlacedGeom* geom = nullptr;
     Vector velocity_before;
   };
   static std::vector<PlacedGeom> Place(const std::vector<Geom>& geoms, double elapsed);
+  // From the box of a geom to x, in the geom's axes; 0 along the axes within the box.
+  static Vector Offset(const PlacedGeom& geom, const Vector& x);
   Touch GroundTouch(const Vector& x) const;
   static Touch GeomTouch(const PlacedGeom& geom, const Vector& x);
+  // d loss / d x from the derivatives with respect to normal and surface velocity.
+  static Vector GeomTouchAdjoint(const PlacedGeom& geom, const Vector& x, const Vector& normal_bar,
+                                 const Vector& surface_velocity_bar);
   // Leads node i at x through its impacts with ground and geoms: changes its velocity and, unless
   // `touches` is null, appends each impact.
   void ApplySurfaces(int i, const Vector& x, const std::vector<PlacedGeom>& geoms, Real h,

@@ -103,7 +103,7 @@ std::vector<GradientReport> CheckRollout(Rollout rollout, double step) {
   AddEntries("mass", &system.mass, exact.mass, 0.1 * step, &quantities[3]);
   AddEntries("gravity", &rollout.environment.gravity, exact.gravity, 10 * step, &quantities[4]);
   AddEntries("position", &rollout.position, gradient.position, 0.1 * step, &quantities[5]);
-  AddEntries("velocity", &rollout.velocity, gradient.velocity, 0.3 * step, &quantities[6]);
+  AddEntries("velocity", &rollout.velocity, gradient.velocity, 3 * step, &quantities[6]);
   quantities[7] = {{"drag", &system.drag, 0.5 * step, exact.drag}};
   const ContactLaws<double>& laws = exact.contact;
   quantities[8] = {{"restitution", &contact.restitution, 0.5 * step, laws.surface.restitution}};
