@@ -91,7 +91,7 @@ CmaEs::CmaEs(const Eigen::VectorXd& start, double step_size, std::uint64_t seed,
     : seed_(seed), population_(population) {
   const Eigen::Index n = start.size();
   if (population_ == 0) population_ = 4 + static_cast<int>(3 * std::log(static_cast<double>(n)));
-  weight_.resize(population_ / 2);
+  weight_ = Eigen::VectorXd::Zero(population_ / 2);
   for (Eigen::Index i = 0; i < weight_.size(); ++i) {
     weight_[i] = std::log((population_ + 1) / 2.0) - std::log(static_cast<double>(i + 1));
   }

@@ -19,11 +19,13 @@ constexpr double kSafety = 0.7;                        // of the sub-step
 constexpr int kMostRecordings = 4;                     // that start values are sought on
 constexpr int kMostSpringRecordings = 12;              // that single springs are fitted to
 constexpr std::array<double, 2> kHorizons = {0.3, 1};  // parts of the fit frames
-constexpr std::array<int, 2> kFactorSteps = {6, 14};   // at most, of each horizon
-constexpr int kCommonSteps = 8;
+constexpr std::array<int, 2> kFactorSteps = {8, 25};   // at most, of each horizon
+constexpr int kCommonSteps = 12;
 constexpr int kSpringSteps = 12;
 // Sub-steps a second, at most (PhysTwin's number): no stiffness is taken that would need more.
 constexpr double kMostSubsteps = 20000;
+// Start systems tried, in sub-steps a frame.
+constexpr double kSoftest = 2, kStiffest = 64;
 constexpr double kCheaper = 1.03;  // a larger neighbour count must be better by this factor
 
 // Standard deviations of the prior on the springs' own parts.
@@ -57,7 +59,7 @@ FullFit::FullFit(FitData data, const TrainOptions& options)
   all_ = FitEpisodes(data_, kMostSpringRecordings);
   state_.score = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(candidates_.size()),
                                            std::numeric_limits<double>::infinity());
-  StartSystem(0, 8);  // throws where the recording gives no body
+  StartSystem(0, kSoftest);  // throws where the recording gives no body
 }
 
 SpringMassSystem FullFit::StartSystem(int candidate, double start_substeps) const {
@@ -99,15 +101,19 @@ SpringMassSystem FullFit::CurrentSystem() const {
   if (state_.stage == Stage::kSprings || state_.stage == Stage::kDone) {
     return SpringParameters().Apply(state_.x);
   }
-  const double substeps = state_.start_substeps > 0 ? state_.start_substeps : 8;
-  const SpringMassSystem start = StartSystem(state_.candidate, substeps);
-  return state_.x.size() == 0 ? start : CommonParameters(start).Apply(state_.x);
+  if (state_.start_substeps > 0) {
+    const SpringMassSystem start = StartSystem(state_.candidate, state_.start_substeps);
+    return CommonParameters(start).Apply(state_.x);
+  }
+  if (state_.best_candidate < 0) return StartSystem(0, kSoftest);
+  const SpringMassSystem start = StartSystem(state_.best_candidate, state_.best_start_substeps);
+  return CommonParameters(start).Apply(state_.best_x);
 }
 
 // Among a few start systems from soft to stiff, the one that predicts the fit frames best.
 double FullFit::SearchStart(int candidate) const {
-  double best = 4, least = std::numeric_limits<double>::infinity();
-  for (double substeps : {2.0, 4.0, 8.0, 16.0, 32.0, 64.0}) {
+  double best = kSoftest, least = std::numeric_limits<double>::infinity();
+  for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
     const Parameters parameters = CommonParameters(StartSystem(candidate, substeps));
     TrackProblem problem(parameters, held_back_.fit, ProblemOptions());
     const auto r = problem.Residuals(Eigen::VectorXd::Zero(parameters.size()));
@@ -195,22 +201,17 @@ void FullFit::StepChoose() {
   state_.score[candidate] = HeldBackError(parameters.Apply(state_.x));
   status_ = fmt::format("{} neighbours: {:.3f} mm on held-back frames", candidates_[candidate],
                         1e3 * state_.score[candidate]);
-  const double before = candidate == 0 ? std::numeric_limits<double>::infinity()
-                                       : state_.score.head(candidate).minCoeff();
-  if (candidate == 0 || kCheaper * state_.score[candidate] < before) {
-    state_.best_start = Eigen::VectorXd::Constant(1, state_.start_substeps);
+  if (state_.best_candidate < 0 ||
+      kCheaper * state_.score[candidate] < state_.score[state_.best_candidate]) {
+    state_.best_candidate = candidate;
+    state_.best_start_substeps = state_.start_substeps;
     state_.best_x = state_.x;
   }
   state_.start_substeps = 0;
   if (++state_.candidate < static_cast<int>(candidates_.size())) return;
 
-  // the first candidate that is as good as the best
-  int chosen = 0;
-  for (int i = 1; i < static_cast<int>(candidates_.size()); ++i) {
-    if (kCheaper * state_.score[i] < state_.score.head(i).minCoeff()) chosen = i;
-  }
-  state_.candidate = chosen;
-  state_.start_substeps = state_.best_start[0];
+  state_.candidate = state_.best_candidate;
+  state_.start_substeps = state_.best_start_substeps;
   state_.x = state_.best_x;
   state_.stage = Stage::kCommon;
   state_.iteration = 0;
@@ -307,14 +308,14 @@ double FullFit::Progress() const {
 }
 
 std::map<std::string, NpzArray> FullFit::Save() const {
-  const std::array<int, 4> counters = {static_cast<int>(state_.stage), state_.candidate,
-                                       state_.horizon, state_.iteration};
-  const std::array<double, 3> scalars = {state_.start_substeps, state_.damping, state_.mean_square};
+  const std::array<int, 5> counters = {static_cast<int>(state_.stage), state_.candidate,
+                                       state_.horizon, state_.iteration, state_.best_candidate};
+  const std::array<double, 4> scalars = {state_.start_substeps, state_.damping, state_.mean_square,
+                                         state_.best_start_substeps};
   return {{"train/counters", NpzArray::Ints({counters.size()}, counters.data())},
           {"train/scalars", NpzArray::Doubles({scalars.size()}, scalars.data())},
           {"train/x", Vector(state_.x)},
           {"train/score", Vector(state_.score)},
-          {"train/best_start", Vector(state_.best_start)},
           {"train/best_x", Vector(state_.best_x)}};
 }
 
@@ -331,17 +332,18 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
     return Eigen::VectorXd(
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
-  const Eigen::VectorXd counters = get("counters", 4), scalars = get("scalars", 3);
+  const Eigen::VectorXd counters = get("counters", 5), scalars = get("scalars", 4);
   state_.stage = static_cast<Stage>(static_cast<int>(counters[0]));
   state_.candidate = static_cast<int>(counters[1]);
   state_.horizon = static_cast<int>(counters[2]);
   state_.iteration = static_cast<int>(counters[3]);
+  state_.best_candidate = static_cast<int>(counters[4]);
   state_.start_substeps = scalars[0];
   state_.damping = scalars[1];
   state_.mean_square = scalars[2];
+  state_.best_start_substeps = scalars[3];
   state_.x = get("x", -1);
   state_.score = get("score", static_cast<int>(candidates_.size()));
-  state_.best_start = get("best_start", -1);
   state_.best_x = get("best_x", -1);
 }
 

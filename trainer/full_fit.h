@@ -49,10 +49,11 @@ class FullFit : public Fitter {
     double start_substeps = 0;  // of the current candidate's start system; 0: not yet searched
     Eigen::VectorXd x;          // common factors, then with the springs' own
     double damping = 0;
-    double mean_square = 0;      // of the residuals at x
-    Eigen::VectorXd score;       // of each candidate tried: held-back track error, m
-    Eigen::VectorXd best_start;  // the chosen candidate's start_substeps ...
-    Eigen::VectorXd best_x;      // ... and common factors
+    double mean_square = 0;          // of the residuals at x
+    Eigen::VectorXd score;           // of each candidate tried: held-back track error, m
+    int best_candidate = -1;         // of those tried; -1: none yet
+    double best_start_substeps = 0;  // its start system ...
+    Eigen::VectorXd best_x;          // ... and common factors
   };
 
   void StepChoose();
