@@ -10,6 +10,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);
   physpring::AddRecordCommand(app);
+  physpring::AddEvalCommand(app);
+  physpring::AddInfoCommand(app);
   physpring::AddDoctorCommand(app);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring eval: a twin and recordings of its object -> how far it is from them.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/eval_report.h"
+#include "cli/evaluation.h"
+#include "cli/picture/page.h"
+#include "trainer/parallel.h"
+#include "twin/atomic_file.h"
+#include "twin/dataset.h"
+
+namespace physpring {
+namespace {
+
+struct Arguments {
+  std::string twin;
+  std::vector<std::string> recordings;
+  std::string json, trajectory, picture;
+  std::string precision = "double";
+  int substeps = 0;  // 0: auto
+  int threads = 1;
+};
+
+CLI::Validator EndsWithHtml() {
+  return CLI::Validator(
+      [](std::string& path) {
+        return path.ends_with(".html") ? "" : path + " does not end with .html";
+      },
+      "");
+}
+
+EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
+                                const PredictOptions& options) {
+  EvaluatedRecording evaluated;
+  evaluated.path = entry.path;
+  evaluated.recording = ReadRecording(entry.path);
+  evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
+  evaluated.result = Evaluate(twin, evaluated.recording, options);
+  return evaluated;
+}
+
+void Run(const Arguments& arguments) {
+  const PredictOptions options{arguments.precision == "float", arguments.substeps};
+  Evaluation evaluation{arguments.twin, ReadTwin(arguments.twin), options.single_precision, {}};
+  const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
+  evaluation.recordings.resize(entries.size());
+  ParallelFor(static_cast<int>(entries.size()), arguments.threads, [&](int i) {
+    evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], options);
+  });
+
+  for (const EvaluatedRecording& evaluated : evaluation.recordings) {
+    for (const std::string& warning : evaluated.recording.warnings) {
+      fmt::print(stderr, "warning: {}\n", warning);
+    }
+  }
+  fmt::print("{}", FormatTables(evaluation));
+  if (!arguments.trajectory.empty()) WriteTrajectories(evaluation, arguments.trajectory);
+  if (!arguments.json.empty()) WriteFileAtomically(arguments.json, FormatJson(evaluation));
+  if (!arguments.picture.empty()) {
+    WriteFileAtomically(arguments.picture, FormatPage(evaluation));
+  }
+}
+
+}  // namespace
+
+void AddEvalCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "eval",
+      "Predicts recordings of a twin's object with every level of the twin, and prints how far the "
+      "predictions are from what was measured.");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
+  command
+      ->add_option("recordings", arguments->recordings,
+                   "recordings, or folders with a dataset.json (their held-out ones)")
+      ->required()
+      ->type_name("REC.npz|DIR");
+  command->add_option("--json", arguments->json, "write all figures, in metres")
+      ->type_name("FILE.json");
+  command
+      ->add_option(
+          "--trajectory", arguments->trajectory,
+          "write the measured points as predicted: a file, or a folder for one a recording")
+      ->type_name("FILE.npz|DIR");
+  command->add_option("--picture", arguments->picture, "write a page with pictures and a film")
+      ->check(EndsWithHtml())
+      ->type_name("FILE.html");
+  command->add_option("--precision", arguments->precision, "double or float")
+      ->check(CLI::IsMember({"double", "float"}))
+      ->capture_default_str();
+  command
+      ->add_option("--substeps", arguments->substeps,
+                   "sub-steps of a frame; auto: stable ones, no longer than in training")
+      ->transform(CLI::Transformer(std::map<std::string, int>{{"auto", 0}}))
+      ->check(CLI::Range(0, 1000000))
+      ->type_name("N|auto")
+      ->default_str("auto");
+  command
+      ->add_option("--threads", arguments->threads,
+                   "recordings at the same time; FPS are truest with 1")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->callback([arguments] { Run(*arguments); });
+}
+
+}  // namespace physpring

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring info: what is in a recording or a twin.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/info_text.h"
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+#include "twin/npz.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Prints what `path` holds and returns it as JSON.
+Json Inspect(const std::string& path) {
+  const Npz arrays = ReadNpz(path);
+  if (arrays.contains("meta")) {
+    const Twin twin = ReadTwin(path);
+    fmt::print("{}: a twin named {} with {} {}\n{}", path, twin.name, twin.levels.size(),
+               twin.levels.size() == 1 ? "level" : "levels", DescribeTwin(twin));
+    return TwinToJson(twin);
+  }
+  if (arrays.contains("points")) {
+    const Recording recording = ReadRecording(path);
+    fmt::print("{}: a recording\n{}", path, DescribeRecording(recording));
+    for (const std::string& warning : recording.warnings) {
+      fmt::print(stderr, "warning: {}\n", warning);
+    }
+    return RecordingToJson(recording);
+  }
+  throw Error(fmt::format(
+      "{}: has neither an array 'points' as a recording nor an array 'meta' as a twin", path));
+}
+
+}  // namespace
+
+void AddInfoCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("info", "Says what is in a recording or a twin.");
+  struct Arguments {
+    std::string file, json;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("file", arguments->file, "recording or twin")->required()->type_name("FILE");
+  command->add_option("--json", arguments->json, "write it as JSON, too")->type_name("FILE.json");
+  command->callback([arguments] {
+    Json json = Inspect(arguments->file);
+    if (arguments->json.empty()) return;
+    json["file"] = arguments->file;
+    // a file name need not be UTF-8
+    WriteFileAtomically(arguments->json,
+                        json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  });
+}
+
+}  // namespace physpring

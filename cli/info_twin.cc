@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/info_text.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Range {
+  double least, median, most;
+};
+
+Range RangeOf(const Eigen::VectorXd& values) {
+  if (values.size() == 0) return {0, 0, 0};
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  return {sorted.front(), (sorted[(n - 1) / 2] + sorted[n / 2]) / 2, sorted.back()};
+}
+
+// What a level has one of for each node or spring.
+struct Quantity {
+  const char* name;
+  const char* unit;
+  const char* key;  // in JSON
+  const Eigen::VectorXd* values;
+};
+
+std::vector<Quantity> QuantitiesOf(const SpringMassSystem& system) {
+  return {{"mass", "kg", "mass_kg", &system.mass},
+          {"contact radius", "m", "contact_radius_m", &system.contact_radius},
+          {"stiffness", "N/m", "stiffness_n_m", &system.stiffness},
+          {"rest length", "m", "rest_length_m", &system.rest_length},
+          {"dashpot", "N s/m", "dashpot_n_s_m", &system.dashpot}};
+}
+
+// Frames [0, train_frames) of each recording.
+std::string DescribeTraining(const Twin& twin) {
+  if (twin.trained_on.empty()) return "nothing";
+  constexpr std::size_t kShown = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, twin.trained_on.size()); ++i) {
+    text += fmt::format("{}{} (frames 0-{})", i > 0 ? ", " : "", twin.trained_on[i].name,
+                        twin.trained_on[i].train_frames - 1);
+  }
+  if (twin.trained_on.size() > kShown) {
+    text += fmt::format(" and {} more", twin.trained_on.size() - kShown);
+  }
+  return text;
+}
+
+std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
+  const SpringMassSystem& system = level.system;
+  const double stable = ComputeStabilityBound(system).timestep;
+  std::string text = fmt::format(
+      "\nlevel {}: {} nodes, {} springs, {:g} kg\n"
+      "  sub-step of training {:.3g} s, stable below {:.3g} s\n"
+      "  {:<14} {:>10} {:>10} {:>10}\n",
+      number, system.node_count(), system.spring_count(), system.mass.sum(),
+      1.0 / level.substeps_per_second, stable, "", "least", "median", "most");
+  for (const Quantity& quantity : QuantitiesOf(system)) {
+    const Range range = RangeOf(*quantity.values);
+    text += fmt::format("  {:<14} {:>10.4g} {:>10.4g} {:>10.4g} {}\n", quantity.name, range.least,
+                        range.median, range.most, quantity.unit);
+  }
+  const ContactCoefficients& contact = system.contact;
+  text += fmt::format("  drag {:.4g} 1/s; contact: restitution {:.3g}, friction {:.3g}; ",
+                      system.drag, contact.restitution, contact.friction);
+  text += contact.collision_distance > 0
+              ? fmt::format("particles collide at {:.3g} m: restitution {:.3g}, friction {:.3g}\n",
+                            contact.collision_distance, contact.object_restitution,
+                            contact.object_friction)
+              : "particles do not collide\n";
+  return text;
+}
+
+Json ToJson(const TwinLevel& level, std::size_t number) {
+  const SpringMassSystem& system = level.system;
+  const double stable = ComputeStabilityBound(system).timestep;
+  Json json = {{"level", number},
+               {"nodes", system.node_count()},
+               {"springs", system.spring_count()},
+               {"total_mass_kg", system.mass.sum()},
+               {"substeps_per_second", level.substeps_per_second},
+               {"stable_timestep_s", std::isfinite(stable) ? Json(stable) : Json(nullptr)}};
+  for (const Quantity& quantity : QuantitiesOf(system)) {
+    const Range range = RangeOf(*quantity.values);
+    json[quantity.key] = {{"min", range.least}, {"median", range.median}, {"max", range.most}};
+  }
+  json["drag_1_s"] = system.drag;
+  json["contact"] = {{"restitution", system.contact.restitution},
+                     {"friction", system.contact.friction},
+                     {"object_restitution", system.contact.object_restitution},
+                     {"object_friction", system.contact.object_friction},
+                     {"collision_distance_m", system.contact.collision_distance}};
+  return json;
+}
+
+}  // namespace
+
+std::string DescribeTwin(const Twin& twin) {
+  std::string text = fmt::format(
+      "object       {} points, {} interior particles, {} controllers{}\n"
+      "trained on   {}\n"
+      "controllers  {}\n"
+      "seed         {}\n"
+      "options      {}\n",
+      twin.points, twin.interior, twin.levels[0].system.controllers,
+      twin.order.size() > 0 ? ", a rod" : "", DescribeTraining(twin),
+      twin.controller_velocity ? "dashpots feel their velocity"
+                               : "dashpots take them as standing still (PhysTwin)",
+      twin.seed, twin.options_json);
+  for (std::size_t i = 0; i < twin.levels.size(); ++i) text += DescribeLevel(twin.levels[i], i);
+  return text;
+}
+
+Json TwinToJson(const Twin& twin) {
+  Json trained_on = Json::array(), levels = Json::array();
+  for (const TrainedOn& recording : twin.trained_on) {
+    trained_on.push_back({{"name", recording.name},
+                          {"hash", recording.hash},
+                          {"train_frames", recording.train_frames}});
+  }
+  for (std::size_t i = 0; i < twin.levels.size(); ++i) levels.push_back(ToJson(twin.levels[i], i));
+  return {{"kind", "twin"},
+          {"name", twin.name},
+          {"points", twin.points},
+          {"interior", twin.interior},
+          {"controllers", twin.levels[0].system.controllers},
+          {"rod", twin.order.size() > 0},
+          {"fps", twin.fps},
+          {"gravity_m_s2", std::vector<double>(twin.gravity.begin(), twin.gravity.end())},
+          {"controller_velocity", twin.controller_velocity},
+          {"trained_on", trained_on},
+          {"seed", twin.seed},
+          {"options", Json::parse(twin.options_json)},
+          {"levels", levels}};
+}
+
+}  // namespace physpring
