@@ -278,13 +278,16 @@ class TwinTest(Case):
         self.assertEqual(phystwin_to_npz.hash_bytes(b"foobar"), "85944171f73967e8")
 
     @unittest.skipUnless("PHYSPRING" in os.environ, "PHYSPRING names no program")
-    def test_physpring_reads_both(self):
-        self.write_checkpoint()
-        self.convert_twin("--mass", 0.1)
-        for name in ("rope.npz", "rope.twin.npz"):
-            result = subprocess.run([os.environ["PHYSPRING"], "info", str(self.root / name)],
-                                    capture_output=True, text=True, check=False)
-            self.assertEqual((result.returncode, result.stderr), (0, ""))
+    def test_physpring_takes_the_twin_as_trained_on_the_recording(self):
+        springs = len(self.write_checkpoint())
+        self.convert("--mass", 0.1)
+        result = subprocess.run(
+            [os.environ["PHYSPRING"], "eval", "rope.twin.npz", "rope.npz", "--json", "eval.json"],
+            cwd=self.root, capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        level = json.loads((self.root / "eval.json").read_text())["levels"][0]
+        self.assertEqual((level["nodes"], level["springs"], level["substeps"]), (61, springs, 667))
+        self.assertIsNotNone(level["fit"])
 
     def test_checkpoint_of_another_run_is_refused(self):
         self.write_checkpoint(change=1)
