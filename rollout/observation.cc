@@ -42,8 +42,10 @@ void AddOcclusion(double hidden, double fps, std::uint64_t seed, std::vector<Poi
   double way = 0;  // of the spots from their points to the next, in [0, 1)
   std::vector<std::pair<double, Eigen::Index>> nearness(static_cast<std::size_t>(count));
   for (std::size_t frame = 1; frame < frames->size(); ++frame) {
-    for (way += 1 / (fps * kWanderTime); way >= 1; way -= 1) {
+    way += 1 / (fps * kWanderTime);
+    while (way >= 1) {
       for (Spot& spot : spots) spot = {spot.to, any_point(random)};
+      way -= 1;
     }
     Points& points = (*frames)[frame];
     for (Eigen::Index i = 0; i < count; ++i) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/scene.h"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "rollout/mujoco_log.h"
@@ -13,7 +15,7 @@ ModelPtr LoadScene(const std::string& path, std::vector<std::string>* warnings) 
   mjModel* model = nullptr;
   for (const std::string& warning : CatchMujoco(
            [&] { model = mj_loadXML(path.c_str(), nullptr, message.data(), message.size()); })) {
-    warnings->push_back(path + ": " + warning);
+    warnings->push_back(fmt::format("{}: {}", path, warning));
   }
   if (!model) throw Error(path + ": " + OneLine(message.data()));
   return ModelPtr(model);
