@@ -115,6 +115,18 @@ TEST(SimulatorContact, AGeomKnocksANodeAway) {
   }
 }
 
+// The node rests until the sub-step in which the geom arrives, then moves along with it.
+TEST(SimulatorContact, AGeomArrivesInItsSubstep) {
+  for (int arrival = 0; arrival < 10; ++arrival) {
+    Geom sphere;
+    sphere.radius = 0.03;
+    const double way = 2e-3;  // in a sub-step
+    Simulation simulation = Hit(sphere, -0.03 - (arrival + 0.5) * way, 0);
+    simulation.Advance(1);
+    EXPECT_NEAR(simulation.position()(0, 0), (10 - arrival) * way, 1e-15) << arrival;
+  }
+}
+
 TEST(SimulatorContact, AGeomPushesANodeAlong) {
   for (const Geom& geom : GeomsThatReach30Millimetres()) {
     Simulation simulation = Hit(geom, -0.1003, 0);
