@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trainer/adam.h"
 #include "trainer/start_system.h"
 #include "twin/error.h"
 #include "twin/stability.h"
@@ -21,7 +22,9 @@ constexpr int kMostSpringRecordings = 12;              // that single springs ar
 constexpr std::array<double, 2> kHorizons = {0.3, 1};  // parts of the fit frames
 constexpr std::array<int, 2> kFactorSteps = {8, 25};   // at most, of each horizon
 constexpr int kCommonSteps = 12;
-constexpr int kSpringSteps = 12;
+constexpr int kGaussNewtonSteps = 12;
+constexpr int kAdamSteps = 150;
+constexpr double kLearningRate = 0.05;  // of log-stiffnesses; others in proportion to their prior
 // Sub-steps a second, at most (PhysTwin's number): no stiffness is taken that would need more.
 constexpr double kMostSubsteps = 20000;
 // Start systems tried, in sub-steps a frame.
@@ -233,11 +236,24 @@ void FullFit::StepCommon() {
   state_.damping = 1e-3;
 }
 
-void FullFit::StepSprings() {
-  const Parameters parameters = SpringParameters();
-  TrackProblem::Options problem_options = ProblemOptions();
-  problem_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
-  TrackProblem problem(parameters, all_, problem_options);
+bool FullFit::UsesAdam() const {
+  switch (options_.optimizer) {
+    case TrainOptions::Optimizer::kGaussNewton:
+      return false;
+    case TrainOptions::Optimizer::kAdam:
+      return true;
+    case TrainOptions::Optimizer::kAutomatic:
+      break;
+  }
+  return data_.recordings[0].ground.has_value();
+}
+
+int FullFit::SpringSteps() const {
+  if (options_.epochs > 0) return options_.epochs;
+  return UsesAdam() ? kAdamSteps : kGaussNewtonSteps;
+}
+
+GaussNewtonOptions FullFit::Prior(const Parameters& parameters) const {
   GaussNewtonOptions options;
   options.conjugate_gradient_steps = 50;
   options.precision.resize(parameters.size());
@@ -260,15 +276,65 @@ void FullFit::StepSprings() {
     options.precision[i] = 1 / (deviation * deviation);
     options.scale[i] = scale;
   }
+  return options;
+}
+
+void FullFit::StepGaussNewton() {
+  const Parameters parameters = SpringParameters();
+  TrackProblem::Options problem_options = ProblemOptions();
+  problem_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
+  TrackProblem problem(parameters, all_, problem_options);
   const GaussNewtonState before{state_.x, state_.damping, state_.mean_square, false};
-  const GaussNewtonState after = GaussNewtonStep(&problem, before, options);
+  const GaussNewtonState after = GaussNewtonStep(&problem, before, Prior(parameters));
   state_.x = after.x;
   state_.damping = after.damping;
   state_.mean_square = after.mean_square;
   ++state_.iteration;
   status_ = fmt::format("single springs: {:.3f} mm", 1e3 * std::sqrt(3 * after.mean_square));
-  const int steps = options_.epochs > 0 ? options_.epochs : kSpringSteps;
-  if (after.converged || state_.iteration >= steps) state_.stage = Stage::kDone;
+  if (after.converged || state_.iteration >= SpringSteps()) state_.stage = Stage::kDone;
+}
+
+// One iteration of Adam on |r|^2 / variance + prior, the variance being the current mean of r^2.
+void FullFit::StepAdam() {
+  const Parameters parameters = SpringParameters();
+  const GaussNewtonOptions prior = Prior(parameters);
+  TrackProblem problem(parameters, all_, ProblemOptions());
+  Adam adam(parameters.size());
+  if (state_.iteration > 0) {
+    adam.steps = state_.iteration;
+    adam.mean = state_.adam_mean;
+    adam.mean_square = state_.adam_mean_square;
+  }
+  const auto r = problem.Linearise(state_.x);
+  if (r) {
+    state_.mean_square = r->squaredNorm() / static_cast<double>(r->size());
+    if (state_.iteration == 0 || state_.mean_square < state_.best_mean_square) {
+      state_.best_mean_square = state_.mean_square;
+      state_.best_springs = state_.x;
+    }
+    const Eigen::VectorXd gradient = problem.JacobianTransposedTimes(*r) / state_.mean_square +
+                                     prior.precision.cwiseProduct(state_.x);
+    // steps in proportion to the prior's deviations, falling as a cosine
+    const double part = static_cast<double>(state_.iteration) / SpringSteps();
+    const double rate = kLearningRate * 0.5 * (1 + std::cos(M_PI * part));
+    Eigen::VectorXd rates(parameters.size());
+    for (int i = 0; i < parameters.size(); ++i) {
+      rates[i] = rate * std::min(1.0, 2 / std::sqrt(prior.precision[i]));
+    }
+    adam.Step(gradient, rates, &state_.x);
+  } else {  // too far: back to the best, and on from there with a fresh momentum
+    state_.x = state_.best_springs;
+    adam.mean.setZero();
+  }
+  state_.adam_mean = adam.mean;
+  state_.adam_mean_square = adam.mean_square;
+  ++state_.iteration;
+  status_ = fmt::format(
+      "single springs: {:.3f} mm{}", 1e3 * std::sqrt(3 * state_.mean_square),
+      problem.cuts() > 0 ? fmt::format(" (adjoint cut into {} windows)", problem.cuts() + 1) : "");
+  if (state_.iteration < SpringSteps()) return;
+  state_.x = state_.best_springs;
+  state_.stage = Stage::kDone;
 }
 
 bool FullFit::Step() {
@@ -280,7 +346,7 @@ bool FullFit::Step() {
       StepCommon();
       return true;
     case Stage::kSprings:
-      StepSprings();
+      UsesAdam() ? StepAdam() : StepGaussNewton();
       return true;
     case Stage::kDone:
       return false;
@@ -300,7 +366,7 @@ double FullFit::Progress() const {
     case Stage::kCommon:
       return 0.4 + 0.1 * state_.iteration / kCommonSteps;
     case Stage::kSprings:
-      return 0.5 + 0.5 * state_.iteration / (options_.epochs > 0 ? options_.epochs : kSpringSteps);
+      return 0.5 + 0.5 * state_.iteration / SpringSteps();
     case Stage::kDone:
       return 1;
   }
@@ -310,13 +376,16 @@ double FullFit::Progress() const {
 std::map<std::string, NpzArray> FullFit::Save() const {
   const std::array<int, 5> counters = {static_cast<int>(state_.stage), state_.candidate,
                                        state_.horizon, state_.iteration, state_.best_candidate};
-  const std::array<double, 4> scalars = {state_.start_substeps, state_.damping, state_.mean_square,
-                                         state_.best_start_substeps};
+  const std::array<double, 5> scalars = {state_.start_substeps, state_.damping, state_.mean_square,
+                                         state_.best_start_substeps, state_.best_mean_square};
   return {{"train/counters", NpzArray::Ints({counters.size()}, counters.data())},
           {"train/scalars", NpzArray::Doubles({scalars.size()}, scalars.data())},
           {"train/x", Vector(state_.x)},
           {"train/score", Vector(state_.score)},
-          {"train/best_x", Vector(state_.best_x)}};
+          {"train/best_x", Vector(state_.best_x)},
+          {"train/adam_mean", Vector(state_.adam_mean)},
+          {"train/adam_mean_square", Vector(state_.adam_mean_square)},
+          {"train/best_springs", Vector(state_.best_springs)}};
 }
 
 void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
@@ -332,7 +401,7 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
     return Eigen::VectorXd(
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
-  const Eigen::VectorXd counters = get("counters", 5), scalars = get("scalars", 4);
+  const Eigen::VectorXd counters = get("counters", 5), scalars = get("scalars", 5);
   state_.stage = static_cast<Stage>(static_cast<int>(counters[0]));
   state_.candidate = static_cast<int>(counters[1]);
   state_.horizon = static_cast<int>(counters[2]);
@@ -342,9 +411,13 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
   state_.damping = scalars[1];
   state_.mean_square = scalars[2];
   state_.best_start_substeps = scalars[3];
+  state_.best_mean_square = scalars[4];
   state_.x = get("x", -1);
   state_.score = get("score", static_cast<int>(candidates_.size()));
   state_.best_x = get("best_x", -1);
+  state_.adam_mean = get("adam_mean", -1);
+  state_.adam_mean_square = get("adam_mean_square", -1);
+  state_.best_springs = get("best_springs", -1);
 }
 
 Twin FullFit::Result() const {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fit of level 0, by gradients and sensitivities of full rollouts, in three stages:
 //   choose   for each candidate neighbour count: start values by Levenberg-Marquardt on a few
-//   factors
-//            (parameters.h without single springs), horizon growing, judged by held-back frames
+//            common factors (parameters.h), horizon growing, judged by held-back frames
 //   common   the same factors again, on all fit frames, from the best candidate's values
-//   springs  every spring's own stiffness, dashpot and rest length: Gauss-Newton with the exact
-//   adjoint
+//   springs  every spring's own stiffness, dashpot and rest length, with the exact adjoint:
+//            Gauss-Newton, or Adam where contacts make the residuals jump
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FULL_FIT_H_
@@ -49,7 +48,10 @@ class FullFit : public Fitter {
     double start_substeps = 0;  // of the current candidate's start system; 0: not yet searched
     Eigen::VectorXd x;          // common factors, then with the springs' own
     double damping = 0;
-    double mean_square = 0;          // of the residuals at x
+    double mean_square = 0;                       // of the residuals at x
+    Eigen::VectorXd adam_mean, adam_mean_square;  // of the gradient
+    double best_mean_square = 0;                  // Adam's best ...
+    Eigen::VectorXd best_springs;                 // ... and its x
     Eigen::VectorXd score;           // of each candidate tried: held-back track error, m
     int best_candidate = -1;         // of those tried; -1: none yet
     double best_start_substeps = 0;  // its start system ...
@@ -58,7 +60,10 @@ class FullFit : public Fitter {
 
   void StepChoose();
   void StepCommon();
-  void StepSprings();
+  void StepGaussNewton();
+  void StepAdam();
+  int SpringSteps() const;
+  bool UsesAdam() const;
 
   SpringMassSystem StartSystem(int candidate, double start_substeps) const;
   double SearchStart(int candidate) const;
@@ -68,6 +73,7 @@ class FullFit : public Fitter {
   TrackProblem::Options ProblemOptions() const;
   Parameters CommonParameters(const SpringMassSystem& base) const;
   Parameters SpringParameters() const;
+  GaussNewtonOptions Prior(const Parameters& parameters) const;
   SpringMassSystem CurrentSystem() const;
 
   FitData data_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/phystwin_variables.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -79,6 +80,19 @@ double PhysTwinLengthScale(const Recording& recording) {
   const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
   std::nth_element(spacing.begin(), middle, spacing.end());
   return std::max(1.0, *middle / kPhysTwinSpacing);
+}
+
+int PhysTwinPasses(const Recording& recording) {
+  constexpr int kPasses = 200, kSheetPasses = 100;
+  if (recording.interior_count() > 0) return kPasses;
+  const Points particles = recording.rest.leftCols(recording.particle_count());
+  const Points centred = particles.colwise() - particles.rowwise().mean();
+  const Eigen::Matrix3d covariance =
+      centred * centred.transpose() / static_cast<double>(centred.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d deviation = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();  // ascending
+  const double spacing = PhysTwinLengthScale(recording) * kPhysTwinSpacing;
+  return deviation[0] < 0.5 * spacing && deviation[1] > 2 * spacing ? kSheetPasses : kPasses;
 }
 
 SpringMassSystem MakePhysTwinSystem(const Recording& recording, const PhysTwinVariables& variables,

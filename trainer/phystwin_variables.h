@@ -43,6 +43,10 @@ Eigen::VectorXd PhysTwinStart();
 // apart (median distance to the nearest), the factor by which; else 1.
 double PhysTwinLengthScale(const Recording& recording);
 
+// Passes of PhysTwin's second stage: 100 for a sheet (no interior particles, and stress-free one
+// flat layer, some particles wide), else 200.
+int PhysTwinPasses(const Recording& recording);
+
 // The system of `variables`, its springs searched in the recording's stress-free positions. Groups
 // of particles that the search leaves apart are joined (topology.h), which PhysTwin does not do.
 // Particles collide with each other only with `self_collision`. Throws Error as MakeStartSystem.

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -18,24 +17,9 @@ namespace {
 
 constexpr int kGenerations = 20;
 constexpr double kStepSize = 1.0 / 6;
-constexpr int kPasses = 200, kSheetPasses = 100;
 constexpr double kSafety = 0.7;      // of the sub-step
 constexpr double kFailed = 1e6;      // m^2: objective of a candidate that cannot be simulated
 constexpr double kPassRollouts = 5;  // time of a pass, in rollouts of the fit frames
-
-// Whether the particles lie in one layer: none inside, and stress-free they are flat and some
-// particles wide.
-bool IsSheet(const Recording& recording) {
-  if (recording.interior_count() > 0) return false;
-  const Points particles = recording.rest.leftCols(recording.particle_count());
-  const Points centred = particles.colwise() - particles.rowwise().mean();
-  const Eigen::Matrix3d covariance =
-      centred * centred.transpose() / static_cast<double>(centred.cols());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d extent = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();  // ascending
-  const double spacing = PhysTwinLengthScale(recording) * kPhysTwinSpacing;
-  return extent[0] < 0.5 * spacing && extent[1] > 2 * spacing;
-}
 
 // Sum of the losses of frames 1, 2, ..., or kFailed for each.
 double SumOfLosses(const SpringMassSystem& system, const Recording& recording,
@@ -56,9 +40,7 @@ TwoStageFit::TwoStageFit(FitData data, const TrainOptions& options)
     : data_(std::move(data)),
       options_(options),
       length_scale_(PhysTwinLengthScale(data_.recordings.at(0))),
-      passes_(options.epochs > 0             ? options.epochs
-              : IsSheet(data_.recordings[0]) ? kSheetPasses
-                                             : kPasses),
+      passes_(options.epochs > 0 ? options.epochs : PhysTwinPasses(data_.recordings[0])),
       search_(PhysTwinStart(), kStepSize, options.seed) {
   SystemAt(PhysTwinStart());  // throws where the recording gives no body
 }
