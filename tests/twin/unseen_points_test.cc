@@ -14,7 +14,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // 3 x 3 x 2 points 2 cm apart.
 Points MakeBlock() {
   Points points(3, 18);
-  for (int i = 0; i < 18; ++i) points.col(i) = 0.02 * Eigen::Vector3d(i % 3, i / 3 % 3, i / 9);
+  for (int i = 0; i < 18; ++i) {
+    points.col(i) = 0.02 * Eigen::Vector3i(i % 3, i / 3 % 3, i / 9).cast<double>();
+  }
   return points;
 }
 
