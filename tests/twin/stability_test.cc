@@ -40,15 +40,15 @@ double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& 
       .maxCoeff();
 }
 
-// From above, within 1 %.
+// From above, within 0.1 %.
 void ExpectBoundsEigenvalues(const SpringMassSystem& system) {
   const StabilityBound bound = ComputeStabilityBound(system);
   const double omega = std::sqrt(LargestEigenvalue(system, system.stiffness));
   EXPECT_GE(bound.omega_max, omega * (1 - 1e-9));
-  EXPECT_LE(bound.omega_max, omega * 1.01);
+  EXPECT_LE(bound.omega_max, omega * 1.001);
   const double gamma = LargestEigenvalue(system, system.dashpot);
   EXPECT_GE(bound.gamma_max, gamma * (1 - 1e-9));
-  EXPECT_LE(bound.gamma_max, gamma * 1.02);
+  EXPECT_LE(bound.gamma_max, gamma * 1.002);
   EXPECT_NEAR(std::pow(bound.timestep * bound.omega_max, 2) + 2 * bound.timestep * bound.gamma_max,
               4, 1e-12);
 }
