@@ -21,8 +21,11 @@ struct Panel {
   double scale;         // px / m
   double width, height;
 
+  // What is far off the panel is brought nearer: it is not seen either way.
   Eigen::Vector2d Pixel(const Eigen::Vector2d& p) const {
-    return {kPadding + (p.x() - low.x()) * scale, height - kPadding - (p.y() - low.y()) * scale};
+    const Eigen::Vector2d pixel(kPadding + (p.x() - low.x()) * scale,
+                                height - kPadding - (p.y() - low.y()) * scale);
+    return pixel.cwiseMax(-9999.0).cwiseMin(9999.0);
   }
 };
 
