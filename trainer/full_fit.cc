@@ -81,6 +81,7 @@ TrackProblem::Options FullFit::ProblemOptions() const {
   problem.rollout.substeps = options_.substeps;
   problem.safety = kSafety;
   problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / data_.recordings[0].fps));
+  problem.difference = HasGround() ? 1e-3 : 1e-5;
   problem.threads = options_.threads;
   return problem;
 }
@@ -88,7 +89,7 @@ TrackProblem::Options FullFit::ProblemOptions() const {
 Parameters FullFit::CommonParameters(const SpringMassSystem& base) const {
   ParameterOptions options;
   options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = false;
-  options.contact = data_.recordings[0].ground.has_value();
+  options.contact = HasGround();
   return Parameters(base, options);
 }
 
@@ -96,7 +97,7 @@ Parameters FullFit::SpringParameters() const {
   const SpringMassSystem start = StartSystem(state_.candidate, state_.start_substeps);
   ParameterOptions options;
   options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = true;
-  options.contact = data_.recordings[0].ground.has_value();
+  options.contact = HasGround();
   return Parameters(CommonParameters(start).Apply(state_.best_x), options);
 }
 
@@ -166,6 +167,7 @@ LevenbergMarquardtState FullFit::StepFactors(const Parameters& parameters,
   TrackProblem problem(parameters, episodes, problem_options);
   LevenbergMarquardtOptions options;
   options.threads = difference_threads;
+  options.difference = HasGround() ? 1e-2 : 1e-3;
   LevenbergMarquardtState factors;
   factors.x = state_.x;
   factors.damping = state_.damping;
@@ -236,21 +238,9 @@ void FullFit::StepCommon() {
   state_.damping = 1e-3;
 }
 
-bool FullFit::UsesAdam() const {
-  switch (options_.optimizer) {
-    case TrainOptions::Optimizer::kGaussNewton:
-      return false;
-    case TrainOptions::Optimizer::kAdam:
-      return true;
-    case TrainOptions::Optimizer::kAutomatic:
-      break;
-  }
-  return data_.recordings[0].ground.has_value();
-}
-
 int FullFit::SpringSteps() const {
   if (options_.epochs > 0) return options_.epochs;
-  return UsesAdam() ? kAdamSteps : kGaussNewtonSteps;
+  return options_.optimizer == TrainOptions::Optimizer::kAdam ? kAdamSteps : kGaussNewtonSteps;
 }
 
 GaussNewtonOptions FullFit::Prior(const Parameters& parameters) const {
@@ -346,7 +336,7 @@ bool FullFit::Step() {
       StepCommon();
       return true;
     case Stage::kSprings:
-      UsesAdam() ? StepAdam() : StepGaussNewton();
+      options_.optimizer == TrainOptions::Optimizer::kAdam ? StepAdam() : StepGaussNewton();
       return true;
     case Stage::kDone:
       return false;

@@ -4,7 +4,7 @@
 //            common factors (parameters.h), horizon growing, judged by held-back frames
 //   common   the same factors again, on all fit frames, from the best candidate's values
 //   springs  every spring's own stiffness, dashpot and rest length, with the exact adjoint:
-//            Gauss-Newton, or Adam where contacts make the residuals jump
+//            Gauss-Newton (or Adam, which needs several times the rollouts)
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FULL_FIT_H_
@@ -63,7 +63,8 @@ class FullFit : public Fitter {
   void StepGaussNewton();
   void StepAdam();
   int SpringSteps() const;
-  bool UsesAdam() const;
+  // Contacts make residuals jump: differences are then taken over longer steps.
+  bool HasGround() const { return data_.recordings[0].ground.has_value(); }
 
   SpringMassSystem StartSystem(int candidate, double start_substeps) const;
   double SearchStart(int candidate) const;

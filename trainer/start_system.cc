@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/start_system.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "twin/neighbours.h"
@@ -15,25 +13,16 @@ constexpr double kStartDrag = 2;  // 1/s
 constexpr double kStartRestitution = 0.1;
 constexpr double kStartFriction = 0.5;
 
-// Distance of the particles' centres from a surface they touch: the lowest height over the ground
-// at which points are seen (1st percentile), if that is no more than the particles' spacing; 0
-// where the body is never near the ground.
+// Distance from the ground at which particles touch it: the lowest height in frame 0, if the body
+// lies there (lower than the particles' spacing); 0 where it does not.
 double ContactRadius(const Recording& recording) {
   if (!recording.ground) return 0;
-  std::vector<double> heights;
-  for (const Points& frame : recording.points) {
-    for (int i = 0; i < frame.cols(); ++i) {
-      const double height = recording.ground->head<3>().dot(frame.col(i)) - (*recording.ground)[3];
-      if (!std::isnan(height)) heights.push_back(height);
-    }
-  }
-  if (heights.empty()) return 0;
-  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 100);
-  std::nth_element(heights.begin(), low, heights.end());
   const Points nodes = recording.start.leftCols(recording.particle_count());
+  const double lowest =
+      (recording.ground->head<3>().transpose() * nodes).minCoeff() - (*recording.ground)[3];
   const std::vector<Neighbour> near = NeighbourSearch(nodes).Nearest(nodes.col(0), 2);
   const double spacing = near.size() > 1 ? near[1].distance : 0;
-  return *low > 0 && *low < spacing ? *low : 0;
+  return lowest > 0 && lowest < spacing ? lowest : 0;
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ std::optional<Eigen::VectorXd> TrackProblem::Linearise(const Eigen::VectorXd& x)
 }
 
 Eigen::VectorXd TrackProblem::JacobianTimes(const Eigen::VectorXd& v) {
-  const double step = 1e-5 / std::max(1e-300, v.cwiseAbs().maxCoeff());
+  const double step = options_.difference / std::max(1e-300, v.cwiseAbs().maxCoeff());
   const auto moved = RollOutAll(x_ + step * v, substeps_, nullptr);
   if (!moved) return Eigen::VectorXd::Zero(r_.size());
   return (*moved - r_) / step;

@@ -19,6 +19,7 @@ class TrackProblem : public LeastSquares {
     RolloutOptions rollout;    // substeps: 0 = from the stability bound
     double safety = 0.7;       // sub-step as a part of the largest stable one
     int most_substeps = 2000;  // a frame; a stiffer system cannot be evaluated
+    double difference = 1e-5;  // longest entry of the step of J v; longer where contacts jump
     int threads = 1;
   };
 

@@ -11,9 +11,8 @@ namespace physpring {
 struct TrainOptions {
   enum class Method { kFull, kTwoStage };
   Method method = Method::kFull;
-  // Of single springs; automatic: Gauss-Newton, but Adam where the recording has a ground.
-  enum class Optimizer { kAutomatic, kGaussNewton, kAdam };
-  Optimizer optimizer = Optimizer::kAutomatic;
+  enum class Optimizer { kGaussNewton, kAdam };  // of single springs
+  Optimizer optimizer = Optimizer::kGaussNewton;
   std::vector<int> neighbours;  // candidates for the neighbour count; empty: chosen automatically
   int epochs = 0;               // of the last stage; 0: the method's default
   int substeps = 0;             // a frame; 0: from the stability bound
