@@ -77,7 +77,7 @@ class RecordSceneTest : public SceneTest {
     try {
       RecordScene(path, options);
     } catch (const Error& error) {
-      const std::string message = error.what();
+      std::string message = error.what();
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
       EXPECT_EQ(message.find(path), 0u) << message;
       return message;
