@@ -14,7 +14,7 @@ function(physpring_room name)
   target_link_libraries(physpring_${name} PUBLIC physpring_options ${room_LIBS})
 endfunction()
 
-# physpring_test(twin/npz_test.cc LIBS physpring_twin [LABELS slow] [SUPPORT support/x.cc ...])
+# physpring_test(twin/npz_test.cc LIBS physpring_twin [LABELS slow] [SUPPORT more.cc ...])
 # makes the program twin_npz_test and one CTest test for each TEST in it. Tests with the label
 # `slow` are left out of the default suite.
 function(physpring_test source)
@@ -26,7 +26,8 @@ function(physpring_test source)
   string(REGEX REPLACE "\\.cc$" "" name "${source}")
   string(REPLACE "/" "_" name "${name}")
   add_executable(${name} ${source} ${test_SUPPORT})
-  target_link_libraries(${name} PRIVATE physpring_options ${test_LIBS} GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE
+    physpring_options physpring_test_support ${test_LIBS} GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE PHYSPRING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name}
     TEST_PREFIX "${name}."
