@@ -88,12 +88,12 @@ class Simulator {
 
   NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
 
+  NodeForce<Real> kick_;  // h g
   const Kernel<Real>* kernel_;
   int nodes_, controllers_;
   SimulationOptions options_;
   Real h_;
-  Real decay_ = 1;        // exp(-h drag)
-  NodeForce<Real> kick_;  // h g
+  Real decay_ = 1;  // exp(-h drag)
   std::vector<Real> h_over_mass_;
   SpringBlocks<Real> springs_;
   Contact<Real> contact_;

@@ -36,8 +36,8 @@ Rollout RandomRollout(int count, std::uint64_t seed) {
     const Points next = hands + random.Box(rollout.system.controllers, 0.01);
     rollout.frames.push_back({hands, next, {}});
     hands = next;
-    rollout.target.push_back(rollout.position + random.Box(nodes, 0.05));
-    rollout.weight.push_back((random.Box(nodes, 1).array() + 1.5).matrix());
+    rollout.target.emplace_back(rollout.position + random.Box(nodes, 0.05));
+    rollout.weight.emplace_back((random.Box(nodes, 1).array() + 1.5).matrix());
   }
   return rollout;
 }
