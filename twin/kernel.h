@@ -55,11 +55,11 @@ struct NodeGradientView {
 template <class Real>
 struct Kernel {
   const char* name;
-  void (*add_spring_forces)(const SpringView<Real>& springs, const NodeState<Real>* state,
+  void (*add_spring_forces)(SpringView<Real> springs, const NodeState<Real>* state,
                             NodeForce<Real>* force);
-  void (*add_spring_forces_adjoint)(const SpringView<Real>& springs, const NodeState<Real>* state,
+  void (*add_spring_forces_adjoint)(SpringView<Real> springs, const NodeState<Real>* state,
                                     const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
-                                    const SpringGradientView<Real>& gradient);
+                                    SpringGradientView<Real> gradient);
   void (*update_velocities)(const NodeView<Real>& nodes, const NodeState<Real>* state,
                             const NodeForce<Real>* force, NodeState<Real>* next);
   void (*update_velocities_adjoint)(const NodeView<Real>& nodes, const NodeState<Real>* state,

@@ -17,43 +17,99 @@ struct VectorKernel {
   using V = typename Lanes::V;        // one number for each of Lanes::kBlocks blocks of springs
   using Quad = typename Lanes::Quad;  // the coordinates of a node, and 0
   using Law = SpringLaw<Lanes>;
+  static constexpr int kSprings = kSpringBlock * Lanes::kBlocks;  // in a vector
 
-  static Law Evaluate(const SpringView<Real>& springs, int block, const NodeState<Real>* state) {
-    const int i = kSpringBlock * block;
+  // A spring takes longer than the processor looks ahead, which would keep it waiting. So the
+  // springs go through each part of the work in turn, so many vectors at a time: what a part needs
+  // is long there.
+  static constexpr int kChunk = 16;
+  // And roots and divisions, for which there is a unit of its own, are made while the forces of
+  // earlier springs are added.
+  static constexpr int kAhead = 3;
+
+  static Law Parameters(SpringView<Real> springs, int vector) {
+    const int i = kSprings * vector;
     Law law;
     law.k = Lanes::Load(springs.stiffness + i);
     law.L = Lanes::Load(springs.rest_length + i);
     law.c = Lanes::Load(springs.dashpot + i);
-    Lanes::Subtract(state, springs.a + block, springs.b + i, law.d, law.u);
-    law.Evaluate();
     return law;
   }
 
-  static void AddSpringForces(const SpringView<Real>& springs, const NodeState<Real>* state,
+  // d = x_a - x_b, u = v_a - v_b
+  static void Subtract(SpringView<Real> springs, int vector, const NodeState<Real>* state, V* d,
+                       V* u) {
+    Lanes::Subtract(state, springs.a + Lanes::kBlocks * vector, springs.b + kSprings * vector, d,
+                    u);
+  }
+
+  static void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                               NodeForce<Real>* force) {
-    for (int block = 0; block < springs.blocks; block += Lanes::kBlocks) {
-      const Law law = Evaluate(springs, block, state);
-      const V on_b[3] = {law.scale * law.d[0], law.scale * law.d[1], law.scale * law.d[2]};
-      Lanes::AddTo(force, springs.a + block, springs.b + kSpringBlock * block, on_b);
+    V d[kChunk][3], d_d[kChunk], d_u[kChunk], scale[kChunk];
+    const int vectors = springs.blocks / Lanes::kBlocks;
+    for (int first = 0; first < vectors; first += kChunk) {
+      const int count = first + kChunk < vectors ? kChunk : vectors - first;
+      const auto evaluate = [&](int i) {
+        Law law = Parameters(springs, first + i);
+        law.Evaluate(d_d[i], d_u[i]);
+        scale[i] = law.scale;
+      };
+      for (int i = 0; i < count; ++i) {
+        V u[3];
+        Subtract(springs, first + i, state, d[i], u);
+        d_d[i] = Law::Dot(d[i], d[i]);
+        d_u[i] = Law::Dot(d[i], u);
+      }
+      for (int i = 0; i < count && i < kAhead; ++i) evaluate(i);
+      for (int i = 0; i < count; ++i) {
+        if (i + kAhead < count) evaluate(i + kAhead);
+        const V on_b[3] = {scale[i] * d[i][0], scale[i] * d[i][1], scale[i] * d[i][2]};
+        Lanes::AddTo(force, springs.a + Lanes::kBlocks * (first + i),
+                     springs.b + kSprings * (first + i), on_b);
+      }
     }
   }
 
-  static void AddSpringForcesAdjoint(const SpringView<Real>& springs, const NodeState<Real>* state,
+  static void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* state,
                                      const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
-                                     const SpringGradientView<Real>& gradient) {
-    for (int block = 0; block < springs.blocks; block += Lanes::kBlocks) {
-      const int i = kSpringBlock * block;
-      const Law law = Evaluate(springs, block, state);
-      V w[3], x_bar[3], v_bar[3];
-      Lanes::Subtract(force_bar, springs.a + block, springs.b + i, w);
-      V k_bar = Lanes::Load(gradient.stiffness + i);
-      V L_bar = Lanes::Load(gradient.rest_length + i);
-      V c_bar = Lanes::Load(gradient.dashpot + i);
-      law.Differentiate(w, &k_bar, &L_bar, &c_bar, x_bar, v_bar);
-      Lanes::Store(k_bar, gradient.stiffness + i);
-      Lanes::Store(L_bar, gradient.rest_length + i);
-      Lanes::Store(c_bar, gradient.dashpot + i);
-      Lanes::AddTo(state_bar, springs.a + block, springs.b + i, x_bar, v_bar);
+                                     SpringGradientView<Real> gradient) {
+    V d[kChunk][3], u[kChunk][3], w[kChunk][3], d_d[kChunk], d_u[kChunk], d_w[kChunk];
+    V along[kChunk], scale[kChunk], damping[kChunk];
+    const int vectors = springs.blocks / Lanes::kBlocks;
+    for (int first = 0; first < vectors; first += kChunk) {
+      const int count = first + kChunk < vectors ? kChunk : vectors - first;
+      for (int i = 0; i < count; ++i) {
+        Subtract(springs, first + i, state, d[i], u[i]);
+        Lanes::Subtract(force_bar, springs.a + Lanes::kBlocks * (first + i),
+                        springs.b + kSprings * (first + i), w[i]);
+        d_d[i] = Law::Dot(d[i], d[i]);
+        d_u[i] = Law::Dot(d[i], u[i]);
+        d_w[i] = Law::Dot(d[i], w[i]);
+      }
+      for (int i = 0; i < count; ++i) {
+        Law law = Parameters(springs, first + i);
+        law.Evaluate(d_d[i], d_u[i]);
+        Real* k = gradient.stiffness + kSprings * (first + i);
+        Real* L = gradient.rest_length + kSprings * (first + i);
+        Real* c = gradient.dashpot + kSprings * (first + i);
+        V k_bar = Lanes::Load(k), L_bar = Lanes::Load(L), c_bar = Lanes::Load(c);
+        law.Differentiate(d_w[i], &k_bar, &L_bar, &c_bar);
+        Lanes::Store(k_bar, k);
+        Lanes::Store(L_bar, L);
+        Lanes::Store(c_bar, c);
+        along[i] = law.along;
+        scale[i] = law.scale;
+        damping[i] = law.damping;
+      }
+      for (int i = 0; i < count; ++i) {
+        V x_bar[3], v_bar[3];
+        for (int j = 0; j < 3; ++j) {
+          x_bar[j] = along[i] * d[i][j] + scale[i] * w[i][j] + damping[i] * u[i][j];
+          v_bar[j] = damping[i] * d[i][j];
+        }
+        Lanes::AddTo(state_bar, springs.a + Lanes::kBlocks * (first + i),
+                     springs.b + kSprings * (first + i), x_bar, v_bar);
+      }
     }
   }
 

@@ -16,21 +16,24 @@ struct OneLane {
 };
 
 template <class Real>
-using Spring = SpringLaw<OneLane<Real>>;
+struct Spring {
+  SpringLaw<OneLane<Real>> law;
+  Real d[3], u[3];
+};
 
-// Spring i between a and springs.b[i], evaluated.
+// Spring i between nodes a and b, evaluated.
 template <class Real>
-Spring<Real> Evaluate(const SpringView<Real>& springs, int i, const NodeState<Real>& a,
+Spring<Real> Evaluate(SpringView<Real> springs, int i, const NodeState<Real>& a,
                       const NodeState<Real>& b) {
   Spring<Real> spring;
-  spring.k = springs.stiffness[i];
-  spring.L = springs.rest_length[i];
-  spring.c = springs.dashpot[i];
+  spring.law.k = springs.stiffness[i];
+  spring.law.L = springs.rest_length[i];
+  spring.law.c = springs.dashpot[i];
   for (int j = 0; j < 3; ++j) {
     spring.d[j] = a.x[j] - b.x[j];
     spring.u[j] = a.v[j] - b.v[j];
   }
-  spring.Evaluate();
+  spring.law.Evaluate(spring.law.Dot(spring.d, spring.d), spring.law.Dot(spring.d, spring.u));
   return spring;
 }
 
@@ -43,7 +46,7 @@ Real Sum(const Real (&value)[kSpringBlock]) {
 }  // namespace
 
 template <class Real>
-void AddSpringForces(const SpringView<Real>& springs, const NodeState<Real>* state,
+void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                      NodeForce<Real>* force) {
   for (int block = 0; block < springs.blocks; ++block) {
     const int a = springs.a[block];
@@ -52,7 +55,7 @@ void AddSpringForces(const SpringView<Real>& springs, const NodeState<Real>* sta
       const int i = kSpringBlock * block + s, b = springs.b[i];
       const Spring<Real> spring = Evaluate(springs, i, state[a], state[b]);
       for (int j = 0; j < 3; ++j) {
-        on_b[j][s] = spring.scale * spring.d[j];
+        on_b[j][s] = spring.law.scale * spring.d[j];
         force[b].f[j] += on_b[j][s];
       }
     }
@@ -61,22 +64,25 @@ void AddSpringForces(const SpringView<Real>& springs, const NodeState<Real>* sta
 }
 
 template <class Real>
-void AddSpringForcesAdjoint(const SpringView<Real>& springs, const NodeState<Real>* state,
+void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* state,
                             const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
-                            const SpringGradientView<Real>& gradient) {
+                            SpringGradientView<Real> gradient) {
   for (int block = 0; block < springs.blocks; ++block) {
     const int a = springs.a[block];
     Real x_bar[3][kSpringBlock], v_bar[3][kSpringBlock];
     for (int s = 0; s < kSpringBlock; ++s) {
       const int i = kSpringBlock * block + s, b = springs.b[i];
-      const Spring<Real> spring = Evaluate(springs, i, state[a], state[b]);
-      Real w[3], b_x_bar[3], b_v_bar[3];
+      Spring<Real> spring = Evaluate(springs, i, state[a], state[b]);
+      auto& [law, d, u] = spring;
+      Real w[3];
       for (int j = 0; j < 3; ++j) w[j] = force_bar[a].f[j] - force_bar[b].f[j];
-      spring.Differentiate(w, &gradient.stiffness[i], &gradient.rest_length[i],
-                           &gradient.dashpot[i], b_x_bar, b_v_bar);
+      law.Differentiate(law.Dot(d, w), &gradient.stiffness[i], &gradient.rest_length[i],
+                        &gradient.dashpot[i]);
       for (int j = 0; j < 3; ++j) {
-        state_bar[b].x[j] += x_bar[j][s] = b_x_bar[j];
-        state_bar[b].v[j] += v_bar[j][s] = b_v_bar[j];
+        x_bar[j][s] = law.along * d[j] + law.scale * w[j] + law.damping * u[j];
+        v_bar[j][s] = law.damping * d[j];
+        state_bar[b].x[j] += x_bar[j][s];
+        state_bar[b].v[j] += v_bar[j][s];
       }
     }
     for (int j = 0; j < 3; ++j) {
@@ -86,14 +92,13 @@ void AddSpringForcesAdjoint(const SpringView<Real>& springs, const NodeState<Rea
   }
 }
 
-template void AddSpringForces(const SpringView<float>&, const NodeState<float>*, NodeForce<float>*);
-template void AddSpringForces(const SpringView<double>&, const NodeState<double>*,
-                              NodeForce<double>*);
-template void AddSpringForcesAdjoint(const SpringView<float>&, const NodeState<float>*,
+template void AddSpringForces(SpringView<float>, const NodeState<float>*, NodeForce<float>*);
+template void AddSpringForces(SpringView<double>, const NodeState<double>*, NodeForce<double>*);
+template void AddSpringForcesAdjoint(SpringView<float>, const NodeState<float>*,
                                      const NodeForce<float>*, NodeState<float>*,
-                                     const SpringGradientView<float>&);
-template void AddSpringForcesAdjoint(const SpringView<double>&, const NodeState<double>*,
+                                     SpringGradientView<float>);
+template void AddSpringForcesAdjoint(SpringView<double>, const NodeState<double>*,
                                      const NodeForce<double>*, NodeState<double>*,
-                                     const SpringGradientView<double>&);
+                                     SpringGradientView<double>);
 
 }  // namespace physpring

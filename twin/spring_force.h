@@ -11,15 +11,15 @@ namespace physpring {
 // Adds every spring's force to its two nodes. `state` and `force` hold nodes, controllers and the
 // spare node.
 template <class Real>
-void AddSpringForces(const SpringView<Real>& springs, const NodeState<Real>* state,
+void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                      NodeForce<Real>* force);
 
 // Given force_bar = d loss / d force, adds to state_bar = d loss / d state and to the derivatives
 // with respect to the springs' parameters.
 template <class Real>
-void AddSpringForcesAdjoint(const SpringView<Real>& springs, const NodeState<Real>* state,
+void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* state,
                             const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
-                            const SpringGradientView<Real>& gradient);
+                            SpringGradientView<Real> gradient);
 
 }  // namespace physpring
 

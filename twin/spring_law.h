@@ -20,7 +20,6 @@ template <class Lanes>
 struct SpringLaw {
   using V = typename Lanes::V;
   V k, L, c;
-  V d[3], u[3];
 
   // Set by Evaluate.
   V inverse;  // 1 / l, or 0 if l < kShortest
@@ -28,33 +27,34 @@ struct SpringLaw {
   V stretch;  // l - L
   V scale;    // F / l: the force on b is scale d
 
+  // Set by Differentiate: the derivatives with respect to the state of b are
+  //   x_bar = along d + scale w + damping u,   v_bar = damping d
+  // and those with respect to the state of a are opposite.
+  V along, damping;
+
   static V Dot(const V* p, const V* q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
 
-  void Evaluate() {
-    const V length = Lanes::Sqrt(Dot(d, d));
+  // From d . d and d . u.
+  void Evaluate(V d_d, V d_u) {
+    const V length = Lanes::Sqrt(d_d);
     inverse = Lanes::Inverse(length);
-    rate = Dot(d, u) * inverse;
+    rate = d_u * inverse;
     stretch = length - L;
     scale = (k * stretch + c * rate) * inverse;
   }
 
   // Adjoint of the force, after Evaluate: with w = force_bar_a - force_bar_b the loss is
-  // -scale d . w. Adds to k_bar, L_bar, c_bar; x_bar and v_bar are the derivatives with respect to
-  // the state of b; those with respect to the state of a are opposite.
-  void Differentiate(const V* w, V* k_bar, V* L_bar, V* c_bar, V* x_bar, V* v_bar) const {
+  // -scale d . w. Adds to the derivatives with respect to the parameters.
+  void Differentiate(V d_w, V* k_bar, V* L_bar, V* c_bar) {
     // loss = -F (n . w):  F_bar = -pull
-    const V pull = Dot(d, w) * inverse;
+    const V pull = d_w * inverse;
     // forward: F = k stretch + c rate
     *k_bar -= pull * stretch;
     *L_bar += pull * k;
     *c_bar -= pull * rate;
     // n (k F_bar) + (I - n n^T) (F w + c F_bar u) / l, in terms of d = l n
-    const V damping = pull * c * inverse;
-    const V along = (pull * (k - scale) - damping * rate) * inverse;
-    for (int j = 0; j < 3; ++j) {
-      x_bar[j] = along * d[j] + scale * w[j] + damping * u[j];
-      v_bar[j] = damping * d[j];
-    }
+    damping = pull * c * inverse;
+    along = (pull * (k - scale) - damping * rate) * inverse;
   }
 };
 
