@@ -5,11 +5,6 @@
 # makes the static library physpring_twin. Its libraries reach those who link it.
 function(physpring_room name)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;LIBS")
-  if(NOT room_SOURCES)
-    add_library(physpring_${name} INTERFACE)
-    target_link_libraries(physpring_${name} INTERFACE physpring_options ${room_LIBS})
-    return()
-  endif()
   add_library(physpring_${name} STATIC ${room_SOURCES})
   target_link_libraries(physpring_${name} PUBLIC physpring_options ${room_LIBS})
 endfunction()
