@@ -20,13 +20,13 @@ constexpr double kSafety = 0.7;                        // of the sub-step
 constexpr int kMostRecordings = 4;                     // that start values are sought on
 constexpr int kMostSpringRecordings = 12;              // that single springs are fitted to
 constexpr std::array<double, 2> kHorizons = {0.3, 1};  // parts of the fit frames
-constexpr std::array<int, 2> kFactorSteps = {8, 25};   // at most, of each horizon
+constexpr std::array<int, 2> kFactorSteps = {8, 30};   // at most, of each horizon
 constexpr int kCommonSteps = 12;
 constexpr int kGaussNewtonSteps = 12;
-constexpr int kAdamSteps = 150;
-constexpr double kLearningRate = 0.05;  // of log-stiffnesses; others in proportion to their prior
-// Sub-steps a second, at most (PhysTwin's number): no stiffness is taken that would need more.
-constexpr double kMostSubsteps = 20000;
+constexpr int kAdamSteps = 120;
+constexpr double kLearningRate = 0.03;  // of log-stiffnesses; others in proportion to their prior
+// Sub-steps a second, at most (half of PhysTwin's): no stiffness is taken that would need more.
+constexpr double kMostSubsteps = 10000;
 // Start systems tried, in sub-steps a frame.
 constexpr double kSoftest = 2, kStiffest = 64;
 constexpr double kCheaper = 1.03;  // a larger neighbour count must be better by this factor
@@ -102,7 +102,7 @@ Parameters FullFit::SpringParameters() const {
 }
 
 SpringMassSystem FullFit::CurrentSystem() const {
-  if (state_.stage == Stage::kSprings || state_.stage == Stage::kDone) {
+  if (state_.stage != Stage::kChoose && state_.stage != Stage::kCommon) {
     return SpringParameters().Apply(state_.x);
   }
   if (state_.start_substeps > 0) {
@@ -232,15 +232,28 @@ void FullFit::StepCommon() {
                         1e3 * std::sqrt(3 * factors.mean_square));
   if (!factors.converged && state_.iteration < kCommonSteps) return;
   state_.best_x = state_.x;
-  state_.stage = Stage::kSprings;
+  state_.stage = Stage::kGaussNewton;
   state_.x = Eigen::VectorXd::Zero(SpringParameters().size());
   state_.iteration = 0;
   state_.damping = 1e-3;
+  if (GaussNewtonSteps() == 0) BeginAdam();
 }
 
-int FullFit::SpringSteps() const {
-  if (options_.epochs > 0) return options_.epochs;
-  return options_.optimizer == TrainOptions::Optimizer::kAdam ? kAdamSteps : kGaussNewtonSteps;
+int FullFit::GaussNewtonSteps() const {
+  switch (options_.optimizer) {
+    case TrainOptions::Optimizer::kAutomatic:
+      return kGaussNewtonSteps;
+    case TrainOptions::Optimizer::kGaussNewton:
+      return options_.epochs > 0 ? options_.epochs : kGaussNewtonSteps;
+    case TrainOptions::Optimizer::kAdam:
+      return 0;
+  }
+  return 0;
+}
+
+int FullFit::AdamSteps() const {
+  if (options_.optimizer == TrainOptions::Optimizer::kGaussNewton) return 0;
+  return options_.epochs > 0 ? options_.epochs : kAdamSteps;
 }
 
 GaussNewtonOptions FullFit::Prior(const Parameters& parameters) const {
@@ -281,7 +294,14 @@ void FullFit::StepGaussNewton() {
   state_.mean_square = after.mean_square;
   ++state_.iteration;
   status_ = fmt::format("single springs: {:.3f} mm", 1e3 * std::sqrt(3 * after.mean_square));
-  if (after.converged || state_.iteration >= SpringSteps()) state_.stage = Stage::kDone;
+  // it gets on while a step lowers the mean square by a hundredth
+  const bool slow = state_.iteration > 1 && after.mean_square > 0.99 * before.mean_square;
+  if (after.converged || slow || state_.iteration >= GaussNewtonSteps()) BeginAdam();
+}
+
+void FullFit::BeginAdam() {
+  state_.stage = AdamSteps() > 0 ? Stage::kAdam : Stage::kDone;
+  state_.iteration = 0;
 }
 
 // One iteration of Adam on |r|^2 / variance + prior, the variance being the current mean of r^2.
@@ -305,7 +325,7 @@ void FullFit::StepAdam() {
     const Eigen::VectorXd gradient = problem.JacobianTransposedTimes(*r) / state_.mean_square +
                                      prior.precision.cwiseProduct(state_.x);
     // steps in proportion to the prior's deviations, falling as a cosine
-    const double part = static_cast<double>(state_.iteration) / SpringSteps();
+    const double part = static_cast<double>(state_.iteration) / AdamSteps();
     const double rate = kLearningRate * 0.5 * (1 + std::cos(M_PI * part));
     Eigen::VectorXd rates(parameters.size());
     for (int i = 0; i < parameters.size(); ++i) {
@@ -322,7 +342,7 @@ void FullFit::StepAdam() {
   status_ = fmt::format(
       "single springs: {:.3f} mm{}", 1e3 * std::sqrt(3 * state_.mean_square),
       problem.cuts() > 0 ? fmt::format(" (adjoint cut into {} windows)", problem.cuts() + 1) : "");
-  if (state_.iteration < SpringSteps()) return;
+  if (state_.iteration < AdamSteps()) return;
   state_.x = state_.best_springs;
   state_.stage = Stage::kDone;
 }
@@ -335,8 +355,11 @@ bool FullFit::Step() {
     case Stage::kCommon:
       StepCommon();
       return true;
-    case Stage::kSprings:
-      options_.optimizer == TrainOptions::Optimizer::kAdam ? StepAdam() : StepGaussNewton();
+    case Stage::kGaussNewton:
+      StepGaussNewton();
+      return true;
+    case Stage::kAdam:
+      StepAdam();
       return true;
     case Stage::kDone:
       return false;
@@ -355,8 +378,10 @@ double FullFit::Progress() const {
     }
     case Stage::kCommon:
       return 0.4 + 0.1 * state_.iteration / kCommonSteps;
-    case Stage::kSprings:
-      return 0.5 + 0.5 * state_.iteration / SpringSteps();
+    case Stage::kGaussNewton:
+      return 0.5 + 0.3 * state_.iteration / GaussNewtonSteps();
+    case Stage::kAdam:
+      return 0.8 + 0.2 * state_.iteration / AdamSteps();
     case Stage::kDone:
       return 1;
   }

@@ -4,7 +4,7 @@
 //            common factors (parameters.h), horizon growing, judged by held-back frames
 //   common   the same factors again, on all fit frames, from the best candidate's values
 //   springs  every spring's own stiffness, dashpot and rest length, with the exact adjoint:
-//            Gauss-Newton (or Adam, which needs several times the rollouts)
+//            Gauss-Newton while it gets on, then Adam
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FULL_FIT_H_
@@ -37,7 +37,7 @@ class FullFit : public Fitter {
   Twin Result() const override;
 
  private:
-  enum class Stage { kChoose, kCommon, kSprings, kDone };
+  enum class Stage { kChoose, kCommon, kGaussNewton, kAdam, kDone };
 
   // Everything that the next step depends on, besides data and options.
   struct State {
@@ -62,7 +62,9 @@ class FullFit : public Fitter {
   void StepCommon();
   void StepGaussNewton();
   void StepAdam();
-  int SpringSteps() const;
+  int GaussNewtonSteps() const;
+  int AdamSteps() const;
+  void BeginAdam();
   // Contacts make residuals jump: differences are then taken over longer steps.
   bool HasGround() const { return data_.recordings[0].ground.has_value(); }
 

@@ -15,7 +15,7 @@ struct LevenbergMarquardtOptions {
   double difference = 1e-3;  // step of the forward differences
   double precision = 0.25;   // of the prior: 1 / (standard deviation of an entry)^2
   double longest_step = 1;   // no entry of x moves further in one step
-  double tolerance = 1e-2;   // converged when a step lowers the objective by less than this share
+  double tolerance = 2e-3;   // converged when a step lowers the objective by less than this share
   int threads = 1;
 };
 

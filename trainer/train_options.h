@@ -11,8 +11,10 @@ namespace physpring {
 struct TrainOptions {
   enum class Method { kFull, kTwoStage };
   Method method = Method::kFull;
-  enum class Optimizer { kGaussNewton, kAdam };  // of single springs
-  Optimizer optimizer = Optimizer::kGaussNewton;
+  // Of single springs. Automatic: Gauss-Newton while it gets on, then Adam, which goes on where
+  // contacts or chaotic motions make the residuals too rough for it.
+  enum class Optimizer { kAutomatic, kGaussNewton, kAdam };
+  Optimizer optimizer = Optimizer::kAutomatic;
   std::vector<int> neighbours;  // candidates for the neighbour count; empty: chosen automatically
   int epochs = 0;               // of the last stage; 0: the method's default
   int substeps = 0;             // a frame; 0: from the stability bound
