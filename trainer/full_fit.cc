@@ -52,7 +52,7 @@ FullFit::FullFit(FitData data, const TrainOptions& options)
   const Recording& first = data_.recordings.at(0);
   if (candidates_.empty()) {
     candidates_ =
-        first.order.size() > 0 ? std::vector<int>{6, 12, 20} : std::vector<int>{12, 18, 26};
+        first.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{18, 26};
     // more neighbours than there are particles are all the same
     const int most = std::max(1, first.particle_count() - 1);
     for (int& candidate : candidates_) candidate = std::min(candidate, most);
