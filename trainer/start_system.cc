@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/start_system.h"
 
+#include <cmath>
 #include <vector>
 
 #include "twin/neighbours.h"
@@ -12,6 +13,7 @@ namespace {
 constexpr double kStartDrag = 2;  // 1/s
 constexpr double kStartRestitution = 0.1;
 constexpr double kStartFriction = 0.5;
+constexpr double kDamping = 0.5;  // damping rate of the fastest mode, relative to its frequency
 
 // Distance from the ground at which particles touch it: the lowest height in frame 0, if the body
 // lies there (lower than the particles' spacing); 0 where it does not.
@@ -47,10 +49,11 @@ SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptio
 
 void ScaleToSubsteps(double frame_time, double substeps, double safety, SpringMassSystem* system) {
   const double h = frame_time / substeps;
-  const double omega = 2 * safety / h;
+  // h / safety is the largest stable sub-step s: s^2 omega^2 + 2 s gamma = 4 (stability.h)
+  const double omega = (std::sqrt(4 + kDamping * kDamping) - kDamping) * safety / h;
   const StabilityBound bound = ComputeStabilityBound(*system);
   system->stiffness *= omega * omega / (bound.omega_max * bound.omega_max);
-  system->dashpot *= 0.5 * omega / bound.gamma_max;
+  system->dashpot *= kDamping * omega / bound.gamma_max;
 }
 
 }  // namespace physpring
