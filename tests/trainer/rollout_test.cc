@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/rollout.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/gradient_check.h"
+#include "tests/support/random_system.h"
+#include "tests/support/swung_rope.h"
+#include "trainer/start_system.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kFrames = 5, kSubsteps = 40;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// A rope of 6 particles with springs that are all different, and a loss that is linear in the
+// positions of each frame.
+struct Case {
+  Recording recording = SwungRope(6, kFrames);
+  SpringMassSystem system = MakeStartSystem(recording, {});
+  RolloutOptions options{.substeps = kSubsteps, .growth_limit = kNever};
+  std::vector<Points> weights;
+
+  Case() {
+    Random random(4);
+    ScaleToSubsteps(1 / recording.fps, kSubsteps / 2, 0.7, &system);
+    for (double& k : system.stiffness) k *= random(0.5, 1);
+    for (double& c : system.dashpot) c *= random(0.5, 1);
+    for (double& length : system.rest_length) length *= random(0.95, 1.05);
+    recording.velocity = random.Box(6, 0.1);
+    for (int frame = 0; frame < kFrames; ++frame) weights.push_back(random.Box(6, 1));
+  }
+
+  std::unique_ptr<Rollout> Run() const { return RollOut(system, {&recording, kFrames}, options); }
+  long double Loss() const {
+    const auto rollout = Run();
+    long double sum = 0;
+    for (int frame = 1; frame < kFrames; ++frame) {
+      for (int i = 0; i < 18; ++i) {
+        sum += static_cast<long double>(weights[frame].reshaped()[i]) *
+               rollout->positions()[frame].reshaped()[i];
+      }
+    }
+    return sum;
+  }
+};
+
+void ExpectPasses(const Case& c, const std::vector<CheckedVariable>& variables) {
+  const GradientReport report = CheckGradient([&c] { return c.Loss(); }, variables);
+  EXPECT_TRUE(report.passed) << report.log;
+}
+
+// `step` is relative to each value.
+std::vector<CheckedVariable> Each(const std::string& name, const Eigen::VectorXd& derivative,
+                                  Eigen::VectorXd* values, double step = 3e-3) {
+  std::vector<CheckedVariable> variables;
+  for (int i = 0; i < values->size(); ++i) {
+    variables.push_back(
+        {name + std::to_string(i), &(*values)[i], step * (*values)[i], derivative[i]});
+  }
+  return variables;
+}
+
+TEST(Rollout, AdjointAgreesWithDifferences) {
+  Case c;
+  const RolloutAdjoint adjoint = c.Run()->Adjoint(c.weights);
+  EXPECT_EQ(adjoint.cuts, 0);
+  ExpectPasses(c, Each("stiffness", adjoint.gradient.stiffness, &c.system.stiffness));
+  ExpectPasses(c, Each("dashpot", adjoint.gradient.dashpot, &c.system.dashpot));
+  ExpectPasses(c, Each("rest length", adjoint.gradient.rest_length, &c.system.rest_length, 1e-4));
+  ExpectPasses(c, Each("mass", adjoint.gradient.mass, &c.system.mass));
+  ExpectPasses(c, {{"drag", &c.system.drag, 1e-2, adjoint.gradient.drag}});
+}
+
+TEST(Rollout, AdjointOfTheInitialVelocityAgreesWithDifferences) {
+  Case c;
+  const RolloutAdjoint adjoint = c.Run()->Adjoint(c.weights);
+  std::vector<CheckedVariable> variables;
+  for (int i = 0; i < 18; ++i) {
+    variables.push_back({"velocity " + std::to_string(i), &c.recording.velocity.reshaped()[i], 1e-3,
+                         adjoint.velocity_bar.reshaped()[i]});
+  }
+  ExpectPasses(c, variables);
+}
+
+TEST(Rollout, StartsWhereTheRecordingDoes) {
+  const Case c;
+  const auto rollout = c.Run();
+  ASSERT_EQ(rollout->positions().size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(rollout->positions()[0], c.recording.start.leftCols(6));
+  EXPECT_FALSE(rollout->diverged());
+}
+
+// With a cut in every frame only the frame's own sub-steps are differentiated.
+TEST(Rollout, CutsAnAdjointThatGrowsTooMuch) {
+  Case c;
+  const RolloutAdjoint whole = c.Run()->Adjoint(c.weights);
+  c.options.growth_limit = 1e-9;
+  const RolloutAdjoint cut = c.Run()->Adjoint(c.weights);
+  EXPECT_EQ(cut.cuts, kFrames - 1);
+  std::vector<Points> first_only(kFrames, Points::Zero(3, 6));
+  first_only[1] = c.weights[1];
+  c.options.growth_limit = kNever;
+  EXPECT_EQ(cut.velocity_bar, c.Run()->Adjoint(first_only).velocity_bar);
+  EXPECT_NE(cut.velocity_bar, whole.velocity_bar);
+}
+
+TEST(Rollout, SaysThatItDiverged) {
+  Case c;
+  c.system.stiffness *= 1e4;
+  const auto rollout = c.Run();
+  EXPECT_TRUE(rollout->diverged());
+  EXPECT_LT(rollout->positions().size(), static_cast<std::size_t>(kFrames));
+  for (const Points& position : rollout->positions()) EXPECT_TRUE(position.allFinite());
+}
+
+TEST(Rollout, SinglePrecisionIsCloseToDouble) {
+  Case c;
+  const auto exact = c.Run();
+  const RolloutAdjoint adjoint = exact->Adjoint(c.weights);
+  c.options.single_precision = true;
+  const auto single = c.Run();
+  EXPECT_LT((single->positions().back() - exact->positions().back()).norm(), 1e-5);
+  EXPECT_NE(single->positions().back(), exact->positions().back());
+  const Eigen::VectorXd& expected = adjoint.gradient.stiffness;
+  EXPECT_LT((single->Adjoint(c.weights).gradient.stiffness - expected).norm(),
+            1e-3 * expected.norm());
+}
+
+}  // namespace
+}  // namespace physpring
