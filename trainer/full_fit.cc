@@ -180,6 +180,14 @@ LevenbergMarquardtState FullFit::StepFactors(const Parameters& parameters,
   return factors;
 }
 
+void FullFit::ExpectSomeSuccess() const {
+  if (std::isfinite(state_.score.minCoeff())) return;
+  throw Error(fmt::format(
+      "recording {}: the motion diverges with every start value tried{}", data_.recordings[0].name,
+      options_.substeps > 0 ? fmt::format("; {} sub-steps a frame are too few", options_.substeps)
+                            : ", even with a stable sub-step; are its positions in metres?"));
+}
+
 void FullFit::StepChoose() {
   if (state_.start_substeps == 0) {
     state_.start_substeps = SearchStart(state_.candidate);
@@ -215,6 +223,7 @@ void FullFit::StepChoose() {
   state_.start_substeps = 0;
   if (++state_.candidate < static_cast<int>(candidates_.size())) return;
 
+  ExpectSomeSuccess();
   state_.candidate = state_.best_candidate;
   state_.start_substeps = state_.best_start_substeps;
   state_.x = state_.best_x;
@@ -302,6 +311,8 @@ void FullFit::StepGaussNewton() {
 void FullFit::BeginAdam() {
   state_.stage = AdamSteps() > 0 ? Stage::kAdam : Stage::kDone;
   state_.iteration = 0;
+  state_.best_springs = state_.x;
+  state_.best_mean_square = std::numeric_limits<double>::infinity();
 }
 
 // One iteration of Adam on |r|^2 / variance + prior, the variance being the current mean of r^2.
@@ -318,7 +329,7 @@ void FullFit::StepAdam() {
   const auto r = problem.Linearise(state_.x);
   if (r) {
     state_.mean_square = r->squaredNorm() / static_cast<double>(r->size());
-    if (state_.iteration == 0 || state_.mean_square < state_.best_mean_square) {
+    if (state_.mean_square < state_.best_mean_square) {
       state_.best_mean_square = state_.mean_square;
       state_.best_springs = state_.x;
     }

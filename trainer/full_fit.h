@@ -29,6 +29,7 @@ class FullFit : public Fitter {
  public:
   FullFit(FitData data, const TrainOptions& options);
 
+  // Throws Error if the motion diverges with the start values of every candidate.
   bool Step() override;
   double Progress() const override;
   std::string Status() const override { return status_; }
@@ -59,6 +60,7 @@ class FullFit : public Fitter {
   };
 
   void StepChoose();
+  void ExpectSomeSuccess() const;
   void StepCommon();
   void StepGaussNewton();
   void StepAdam();
