@@ -17,6 +17,16 @@ Eigen::Matrix<Real, 3, 1> X(const NodeState<Real>& node) {
 }
 
 template <class Real>
+Eigen::Matrix<Real, 3, 1> V(const NodeState<Real>& node) {
+  return {node.v[0], node.v[1], node.v[2]};
+}
+
+template <class Real>
+void SetV(const Eigen::Matrix<Real, 3, 1>& value, NodeState<Real>* node) {
+  for (int j = 0; j < 3; ++j) node->v[j] = value[j];
+}
+
+template <class Real>
 void AddX(const Eigen::Matrix<Real, 3, 1>& value, NodeState<Real>* node) {
   for (int j = 0; j < 3; ++j) node->x[j] += value[j];
 }
@@ -75,109 +85,83 @@ typename Contact<Real>::Pairs Contact<Real>::FindPairs(const NodeStates<Real>& s
   return pairs;
 }
 
-template <class Real>
-bool Contact<Real>::PairHits(const NodeStates<Real>& state, const std::array<int, 2>& pair,
-                             const Velocities& velocity) const {
-  const Vector d = X(state[pair[1]]) - X(state[pair[0]]);
-  const Real length = d.norm();
-  if (length >= distance_ || length < Real(1e-9)) return false;
-  return d.dot(velocity[pair[1]] - velocity[pair[0]]) < -Real(kApproach) * length;
-}
-
-// Number of impacts of each node.
-template <class Real>
-std::vector<int> Contact<Real>::CountHits(const NodeStates<Real>& state, const Pairs& pairs,
-                                          const Velocities& velocity) const {
-  std::vector<int> hits(nodes_, 0);
-  for (const std::array<int, 2>& pair : pairs) {
-    if (!PairHits(state, pair, velocity)) continue;
-    ++hits[pair[0]];
-    ++hits[pair[1]];
-  }
-  return hits;
-}
-
 // The impulse that gives a pair alone the relative velocity u' = Impact(u), u = v_b - v_a, divided
 // by the number of impacts of the busier of the two; the same on both sides, which keeps momentum:
 //   v_a -= m_b / (m_a + m_b) (u' - u) / hits,   v_b += m_a / (m_a + m_b) (u' - u) / hits
 template <class Real>
 void Contact<Real>::ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs,
-                               Velocities* velocity) const {
-  const Velocities before = *velocity;
-  const std::vector<int> hits = CountHits(state, pairs, before);
-  for (const auto& pair : pairs) {
-    if (!PairHits(state, pair, before)) continue;
-    const auto [a, b] = pair;
+                               NodeStates<Real>* next, Impacts* impacts) const {
+  for (const Velocity& before : impacts->before) impacts->hits[before.node] = 0;
+  impacts->before.clear();
+  impacts->collisions.clear();
+  if (pairs.empty()) return;
+  impacts->hits.resize(nodes_, 0);
+  for (const auto& [a, b] : pairs) {
+    const Vector d = X(state[b]) - X(state[a]);
+    const Real length = d.norm();
+    if (length >= distance_ || length < Real(1e-9)) continue;
+    const Vector u = V((*next)[b]) - V((*next)[a]);
+    if (d.dot(u) >= -Real(kApproach) * length) continue;
+    impacts->collisions.push_back({a, b, u});
+    for (int i : {a, b}) {
+      if (impacts->hits[i]++ == 0) impacts->before.push_back({i, V((*next)[i])});
+    }
+  }
+  for (const auto& [a, b, u] : impacts->collisions) {
     const Vector n = (X(state[b]) - X(state[a])).normalized();
-    const Vector u = before[b] - before[a];
-    const Vector change =
-        (Impact(u, n, laws_.object) - u) / static_cast<Real>(std::max(hits[a], hits[b]));
+    const Vector change = (Impact(u, n, laws_.object) - u) /
+                          static_cast<Real>(std::max(impacts->hits[a], impacts->hits[b]));
     const Real fraction = mass_[a] / (mass_[a] + mass_[b]);
-    (*velocity)[a] -= (1 - fraction) * change;
-    (*velocity)[b] += fraction * change;
+    SetV<Real>(V((*next)[a]) - (1 - fraction) * change, &(*next)[a]);
+    SetV<Real>(V((*next)[b]) + fraction * change, &(*next)[b]);
   }
 }
 
 template <class Real>
-void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
-                                      const Velocities& velocity, Velocities* velocity_bar,
+void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+                                      NodeStates<Real>* state_bar,
                                       ContactGradient<Real>* gradient) const {
-  const Velocities after_bar = *velocity_bar;
-  const std::vector<int> hits = CountHits(state, pairs, velocity);
-  for (const auto& pair : pairs) {
-    if (!PairHits(state, pair, velocity)) continue;
-    const auto [a, b] = pair;
+  if (impacts.collisions.empty()) return;
+  const NodeStates<Real> after_bar = *state_bar;
+  for (const auto& [a, b, u] : impacts.collisions) {
     const Vector d = X(state[b]) - X(state[a]);
     const Real length = d.norm();
     const Vector n = d / length;
-    const Vector u = velocity[b] - velocity[a];
-    const Real share = 1 / static_cast<Real>(std::max(hits[a], hits[b]));
+    const Real share = 1 / static_cast<Real>(std::max(impacts.hits[a], impacts.hits[b]));
     const Vector change = share * (Impact(u, n, laws_.object) - u);
     const Real mass = mass_[a] + mass_[b];
     const Real fraction = mass_[a] / mass;
+    const Vector v_a_bar = V(after_bar[a]), v_b_bar = V(after_bar[b]);
     // forward: velocity_a -= (1 - fraction) change, velocity_b += fraction change
-    const Vector change_bar = fraction * after_bar[b] - (1 - fraction) * after_bar[a];
+    const Vector change_bar = fraction * v_b_bar - (1 - fraction) * v_a_bar;
     // forward: fraction = m_a / (m_a + m_b)
-    const Real fraction_bar = change.dot(after_bar[a] + after_bar[b]);
+    const Real fraction_bar = change.dot(v_a_bar + v_b_bar);
     gradient->mass[a] += fraction_bar * (1 - fraction) / mass;
     gradient->mass[b] -= fraction_bar * fraction / mass;
     // forward: change = share (Impact(u, n) - u)
     Vector u_bar = -share * change_bar, n_bar = Vector::Zero();
     ImpactAdjoint<Real>(u, n, laws_.object, share * change_bar, &u_bar, &n_bar,
                         &gradient->laws.object);
-    (*velocity_bar)[b] += u_bar;
-    (*velocity_bar)[a] -= u_bar;
+    SetV<Real>(V((*state_bar)[b]) + u_bar, &(*state_bar)[b]);
+    SetV<Real>(V((*state_bar)[a]) - u_bar, &(*state_bar)[a]);
     // forward: n = d / |d|
     const Vector d_bar = (n_bar - n.dot(n_bar) * n) / length;
-    AddX(d_bar, &gradient->state[b]);
-    AddX<Real>(-d_bar, &gradient->state[a]);
+    AddX(d_bar, &(*state_bar)[b]);
+    AddX<Real>(-d_bar, &(*state_bar)[a]);
   }
 }
 
 template <class Real>
-std::vector<typename Contact<Real>::PlacedGeom> Contact<Real>::Place(const std::vector<Geom>& geoms,
-                                                                     double elapsed) {
-  std::vector<PlacedGeom> placed;
-  for (const Geom& geom : geoms) {
-    const double speed = geom.angular_velocity.norm();  // rad/s
-    Eigen::Matrix3d rotation = geom.rotation;
-    if (speed > 0) {
-      rotation = Eigen::AngleAxisd(elapsed * speed, geom.angular_velocity / speed) * geom.rotation;
-    }
-    const Eigen::Vector3d position = geom.position + elapsed * geom.velocity;
-    placed.push_back({geom.half_size.cast<Real>(), static_cast<Real>(geom.radius),
-                      position.cast<Real>(), rotation.cast<Real>(), geom.velocity.cast<Real>(),
-                      geom.angular_velocity.cast<Real>()});
+typename Contact<Real>::PlacedGeom Contact<Real>::Place(const Geom& geom, double elapsed) {
+  const double speed = geom.angular_velocity.norm();  // rad/s
+  Eigen::Matrix3d rotation = geom.rotation;
+  if (speed > 0) {
+    rotation = Eigen::AngleAxisd(elapsed * speed, geom.angular_velocity / speed) * geom.rotation;
   }
-  return placed;
-}
-
-template <class Real>
-typename Contact<Real>::Touch Contact<Real>::GroundTouch(const Vector& x) const {
-  Touch touch;
-  touch.normal = ground_normal_;
-  touch.gap = ground_normal_.dot(x) - ground_offset_;
-  return touch;
+  const Eigen::Vector3d position = geom.position + elapsed * geom.velocity;
+  return {geom.half_size.cast<Real>(), static_cast<Real>(geom.radius),
+          position.cast<Real>(),       rotation.cast<Real>(),
+          geom.velocity.cast<Real>(),  geom.angular_velocity.cast<Real>()};
 }
 
 template <class Real>
@@ -187,23 +171,21 @@ typename Contact<Real>::Vector Contact<Real>::Offset(const PlacedGeom& geom, con
 }
 
 template <class Real>
-typename Contact<Real>::Touch Contact<Real>::GeomTouch(const PlacedGeom& geom, const Vector& x) {
-  Touch touch;
-  touch.geom = &geom;
+Real Contact<Real>::Gap(const PlacedGeom& geom, const Vector& x, Touch* touch) {
   const Vector arm = x - geom.position;
+  touch->surface_velocity = geom.velocity + geom.angular_velocity.cross(arm);
   const Vector offset = Offset(geom, x);
   const Real distance = offset.norm();
   if (distance > 0) {
-    touch.normal = geom.rotation * offset / distance;
-    touch.gap = distance - geom.radius;
-  } else {  // inside the box: towards the nearest face
-    const Vector local = geom.rotation.transpose() * arm;
-    int axis = 0;
-    touch.gap = (local.cwiseAbs() - geom.half_size).maxCoeff(&axis) - geom.radius;
-    touch.normal = geom.rotation.col(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
+    touch->normal = geom.rotation * offset / distance;
+    return distance - geom.radius;
   }
-  touch.surface_velocity = geom.velocity + geom.angular_velocity.cross(arm);
-  return touch;
+  // inside the box: towards the nearest face
+  const Vector local = geom.rotation.transpose() * arm;
+  int axis = 0;
+  const Real gap = (local.cwiseAbs() - geom.half_size).maxCoeff(&axis) - geom.radius;
+  touch->normal = geom.rotation.col(axis) * (local[axis] < 0 ? Real(-1) : Real(1));
+  return gap;
 }
 
 template <class Real>
@@ -229,59 +211,89 @@ typename Contact<Real>::Vector Contact<Real>::GeomTouchAdjoint(const PlacedGeom&
 }
 
 template <class Real>
-void Contact<Real>::ApplySurfaces(int i, const Vector& x, const std::vector<PlacedGeom>& geoms,
-                                  Real h, Vector* velocity, std::vector<Touch>* touches) const {
-  const auto apply = [&](Touch touch) {
-    const Vector u = *velocity - touch.surface_velocity;
-    const Real approach = touch.normal.dot(u);
-    if (approach >= -Real(kApproach) || touch.gap - radius_[i] + h * approach >= 0) return;
-    touch.velocity_before = *velocity;
-    *velocity = touch.surface_velocity + Impact<Real>(u, touch.normal, laws_.surface);
-    if (touches) touches->push_back(touch);
-  };
-  if (has_ground_) apply(GroundTouch(x));
-  for (const PlacedGeom& geom : geoms) apply(GeomTouch(geom, x));
+bool Contact<Real>::Hits(int node, Real gap, Real approach, Real h) const {
+  return approach < -Real(kApproach) && gap - radius_[node] + h * approach < 0;
+}
+
+template <class Real>
+void Contact<Real>::ApplyTouch(Touch touch, NodeStates<Real>* next, Impacts* impacts) const {
+  NodeState<Real>* node = &(*next)[touch.node];
+  touch.velocity_before = V(*node);
+  const Vector u = touch.velocity_before - touch.surface_velocity;
+  SetV<Real>(touch.surface_velocity + Impact<Real>(u, touch.normal, laws_.surface), node);
+  impacts->touches.push_back(touch);
+}
+
+template <class Real>
+void Contact<Real>::ApplyGround(const NodeStates<Real>& state, Real h, NodeStates<Real>* next,
+                                Impacts* impacts) const {
+  if (!has_ground_) return;
+  const Vector normal = ground_normal_;
+  for (int i = 0; i < nodes_; ++i) {
+    const Real gap = normal.dot(X(state[i])) - ground_offset_;
+    if (!Hits(i, gap, normal.dot(V((*next)[i])), h)) continue;
+    ApplyTouch({i, -1, normal}, next, impacts);
+  }
+}
+
+template <class Real>
+void Contact<Real>::ApplyGeoms(const NodeStates<Real>& state, Real h, NodeStates<Real>* next,
+                               Impacts* impacts) const {
+  for (std::size_t geom = 0; geom < impacts->geoms.size(); ++geom) {
+    for (int i = 0; i < nodes_; ++i) {
+      Touch touch{i, static_cast<int>(geom)};
+      const Real gap = Gap(impacts->geoms[geom], X(state[i]), &touch);
+      const Real approach = touch.normal.dot(V((*next)[i]) - touch.surface_velocity);
+      if (Hits(i, gap, approach, h)) ApplyTouch(touch, next, impacts);
+    }
+  }
+}
+
+template <class Real>
+void Contact<Real>::ApplyTouchAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+                                      const Touch& touch, NodeStates<Real>* state_bar,
+                                      ContactGradient<Real>* gradient) const {
+  NodeState<Real>* bar = &(*state_bar)[touch.node];
+  const Vector v_bar = V(*bar);
+  // forward: v' = s + Impact(v - s, n)
+  Vector u_bar = Vector::Zero(), n_bar = Vector::Zero();
+  ImpactAdjoint<Real>(touch.velocity_before - touch.surface_velocity, touch.normal, laws_.surface,
+                      v_bar, &u_bar, &n_bar, &gradient->laws.surface);
+  if (touch.geom >= 0) {
+    AddX(GeomTouchAdjoint(impacts.geoms[touch.geom], X(state[touch.node]), n_bar, v_bar - u_bar),
+         bar);
+  }
+  SetV(u_bar, bar);
 }
 
 template <class Real>
 void Contact<Real>::Apply(const NodeStates<Real>& state, const Pairs& pairs,
                           const std::vector<Geom>& geoms, double elapsed, double h,
-                          Velocities* velocity) const {
-  if (!pairs.empty()) ApplyPairs(state, pairs, velocity);
-  const std::vector<PlacedGeom> placed = Place(geoms, elapsed);
-  for (int i = 0; i < nodes_; ++i) {
-    ApplySurfaces(i, X(state[i]), placed, static_cast<Real>(h), &(*velocity)[i], nullptr);
-  }
+                          NodeStates<Real>* next, Impacts* impacts) const {
+  impacts->geoms.clear();
+  for (const Geom& geom : geoms) impacts->geoms.push_back(Place(geom, elapsed));
+  impacts->touches.clear();
+  ApplyPairs(state, pairs, next, impacts);
+  ApplyGround(state, static_cast<Real>(h), next, impacts);
+  ApplyGeoms(state, static_cast<Real>(h), next, impacts);
 }
 
 template <class Real>
-void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
-                                 const std::vector<Geom>& geoms, double elapsed, double h,
-                                 const Velocities& velocity, Velocities* velocity_bar,
+void Contact<Real>::Undo(const Impacts& impacts, NodeStates<Real>* next) const {
+  for (auto touch = impacts.touches.rbegin(); touch != impacts.touches.rend(); ++touch) {
+    SetV(touch->velocity_before, &(*next)[touch->node]);
+  }
+  for (const Velocity& before : impacts.before) SetV(before.v, &(*next)[before.node]);
+}
+
+template <class Real>
+void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+                                 NodeStates<Real>* state_bar,
                                  ContactGradient<Real>* gradient) const {
-  Velocities after_pairs = velocity;
-  if (!pairs.empty()) ApplyPairs(state, pairs, &after_pairs);
-  const std::vector<PlacedGeom> placed = Place(geoms, elapsed);
-  std::vector<Touch> touches;  // of one node
-  for (int i = 0; i < nodes_; ++i) {
-    touches.clear();
-    ApplySurfaces(i, X(state[i]), placed, static_cast<Real>(h), &after_pairs[i], &touches);
-    Vector& v_bar = (*velocity_bar)[i];
-    for (auto touch = touches.rbegin(); touch != touches.rend(); ++touch) {
-      // forward: v' = s + Impact(v - s, n)
-      Vector u_bar = Vector::Zero(), n_bar = Vector::Zero();
-      ImpactAdjoint<Real>(touch->velocity_before - touch->surface_velocity, touch->normal,
-                          laws_.surface, v_bar, &u_bar, &n_bar, &gradient->laws.surface);
-      if (touch->geom) {
-        AddX(GeomTouchAdjoint(*touch->geom, X(state[i]), n_bar, v_bar - u_bar),
-             &gradient->state[i]);
-      }
-      v_bar = u_bar;
-    }
+  for (auto touch = impacts.touches.rbegin(); touch != impacts.touches.rend(); ++touch) {
+    ApplyTouchAdjoint(state, impacts, *touch, state_bar, gradient);
   }
-  if (!pairs.empty()) {
-    ApplyPairsAdjoint(state, pairs, velocity, velocity_bar, gradient);
-  }
+  ApplyPairsAdjoint(state, impacts, state_bar, gradient);
 }
 
 template class Contact<float>;

@@ -22,12 +22,10 @@ struct ContactLaws {
   ContactPair<Real> object;   // between particles
 };
 
-// Derivatives that the contacts of a sub-step add to. `state`: with respect to the positions (the x
-// of each entry); `mass`: with respect to the nodes' masses.
+// Derivatives that the contacts of a sub-step add to, besides those with respect to the state.
 template <class Real>
 struct ContactGradient {
-  NodeState<Real>* state;
-  Real* mass;
+  std::vector<Real> mass;  // (nodes)
   ContactLaws<Real> laws;
 };
 
@@ -35,8 +33,11 @@ template <class Real>
 class Contact {
  public:
   using Vector = Eigen::Matrix<Real, 3, 1>;
-  using Velocities = std::vector<Vector>;
   using Pairs = std::vector<std::array<int, 2>>;
+
+  // The impacts of a sub-step: what its adjoint needs. Kept from sub-step to sub-step, it allocates
+  // no memory unless there are more impacts than ever before.
+  class Impacts;
 
   // `ground` and the system's contact_radius decide about the ground. Particles that are closer
   // than the collision distance in the reference configuration, or joined by a spring, never
@@ -47,23 +48,22 @@ class Contact {
   // collision distance.
   void SetParameters(const SpringMassSystem& system);
 
-  // Whether anything can collide when there are `geoms` geoms.
-  bool Active(std::size_t geoms) const { return has_ground_ || distance_ > 0 || geoms > 0; }
-
   // Pairs of particles near enough to collide within the next frame (looked for once a frame).
   Pairs FindPairs(const NodeStates<Real>& state, double frame_time) const;
 
-  // velocity <- velocity after all contacts of a sub-step of h seconds, at the positions of
-  // `state`. The geoms stand at their poses `elapsed` seconds after the start of the frame.
+  // The velocities of `next` <- those after all contacts of a sub-step of h seconds, at the
+  // positions of `state`. The geoms stand at their poses `elapsed` seconds after the start of the
+  // frame.
   void Apply(const NodeStates<Real>& state, const Pairs& pairs, const std::vector<Geom>& geoms,
-             double elapsed, double h, Velocities* velocity) const;
+             double elapsed, double h, NodeStates<Real>* next, Impacts* impacts) const;
 
-  // Adjoint: `velocity` before the contacts; velocity_bar: in d loss / d velocity after, out
-  // before.
-  void ApplyAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
-                    const std::vector<Geom>& geoms, double elapsed, double h,
-                    const Velocities& velocity, Velocities* velocity_bar,
-                    ContactGradient<Real>* gradient) const;
+  // Makes the velocities of `next` those before the contacts again.
+  void Undo(const Impacts& impacts, NodeStates<Real>* next) const;
+
+  // Adjoint. The velocities of state_bar: in d loss / d velocity after, out before; its positions:
+  // adds d loss / d position.
+  void ApplyAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+                    NodeStates<Real>* state_bar, ContactGradient<Real>* gradient) const;
 
  private:
   // A geom where it stands in a sub-step.
@@ -74,35 +74,45 @@ class Contact {
     Eigen::Matrix<Real, 3, 3> rotation;
     Vector velocity, angular_velocity;
   };
-  // One impact of a node on the ground (geom = null) or a geom.
+  // One impact of a node on the ground or a geom.
   struct Touch {
-    Vector normal;
-    Real gap;
+    int node;
+    int geom;  // index in Impacts; -1 = ground
+    Vector normal = Vector::Zero();
     Vector surface_velocity = Vector::Zero();
-    const PlacedGeom* geom = nullptr;
-    Vector velocity_before;
+    Vector velocity_before = Vector::Zero();
   };
-  static std::vector<PlacedGeom> Place(const std::vector<Geom>& geoms, double elapsed);
+  // One impact of two particles.
+  struct Collision {
+    int a, b;
+    Vector u;  // v_b - v_a before
+  };
+  struct Velocity {
+    int node;
+    Vector v;
+  };
+
+  static PlacedGeom Place(const Geom& geom, double elapsed);
   // From the box of a geom to x, in the geom's axes; 0 along the axes within the box.
   static Vector Offset(const PlacedGeom& geom, const Vector& x);
-  Touch GroundTouch(const Vector& x) const;
-  static Touch GeomTouch(const PlacedGeom& geom, const Vector& x);
+  // Normal and velocity of the surface of a geom that is nearest to x, and the distance from it.
+  static Real Gap(const PlacedGeom& geom, const Vector& x, Touch* touch);
   // d loss / d x from the derivatives with respect to normal and surface velocity.
   static Vector GeomTouchAdjoint(const PlacedGeom& geom, const Vector& x, const Vector& normal_bar,
                                  const Vector& surface_velocity_bar);
-  // Leads node i at x through its impacts with ground and geoms: changes its velocity and, unless
-  // `touches` is null, appends each impact.
-  void ApplySurfaces(int i, const Vector& x, const std::vector<PlacedGeom>& geoms, Real h,
-                     Vector* velocity, std::vector<Touch>* touches) const;
+  bool Hits(int node, Real gap, Real approach, Real h) const;
+  void ApplyTouch(Touch touch, NodeStates<Real>* next, Impacts* impacts) const;
+  void ApplyGround(const NodeStates<Real>& state, Real h, NodeStates<Real>* next,
+                   Impacts* impacts) const;
+  void ApplyGeoms(const NodeStates<Real>& state, Real h, NodeStates<Real>* next,
+                  Impacts* impacts) const;
+  void ApplyTouchAdjoint(const NodeStates<Real>& state, const Impacts& impacts, const Touch& touch,
+                         NodeStates<Real>* state_bar, ContactGradient<Real>* gradient) const;
 
-  void ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs, Velocities* velocity) const;
-  void ApplyPairsAdjoint(const NodeStates<Real>& state, const Pairs& pairs,
-                         const Velocities& velocity, Velocities* velocity_bar,
-                         ContactGradient<Real>* gradient) const;
-  std::vector<int> CountHits(const NodeStates<Real>& state, const Pairs& pairs,
-                             const Velocities& velocity) const;
-  bool PairHits(const NodeStates<Real>& state, const std::array<int, 2>& pair,
-                const Velocities& velocity) const;
+  void ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs, NodeStates<Real>* next,
+                  Impacts* impacts) const;
+  void ApplyPairsAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+                         NodeStates<Real>* state_bar, ContactGradient<Real>* gradient) const;
 
   int nodes_;
   bool has_ground_ = false;
@@ -112,6 +122,16 @@ class Contact {
   ContactLaws<Real> laws_;
   std::vector<Real> radius_, mass_;
   Pairs never_;  // sorted pairs (i < j) that never collide
+};
+
+template <class Real>
+class Contact<Real>::Impacts {
+  friend class Contact;
+  std::vector<PlacedGeom> geoms;
+  std::vector<Collision> collisions;
+  std::vector<int> hits;  // of each node, by other particles
+  std::vector<Touch> touches;
+  std::vector<Velocity> before;  // of the nodes that particles hit
 };
 
 }  // namespace physpring

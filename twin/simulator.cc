@@ -105,55 +105,25 @@ void Simulator<Real>::PlaceControllers(const FrameInput& input, int substep, Sta
 template <class Real>
 void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs,
                               int substep, State* state, State* next,
-                              typename Contact<Real>::Velocities* before_contact,
+                              typename Contact<Real>::Impacts* impacts,
                               NodeForces<Real>* force) const {
   PlaceControllers(input, substep, state);
   std::fill(force->begin(), force->end(), NodeForce<Real>{});
   kernel_->add_spring_forces(springs_.View(), state->data(), force->data());
   kernel_->update_velocities(Nodes(), state->data(), force->data(), next->data());
-  if (contact_.Active(input.geoms.size())) {
-    before_contact->resize(nodes_);
-    for (int i = 0; i < nodes_; ++i) {
-      (*before_contact)[i] = {(*next)[i].v[0], (*next)[i].v[1], (*next)[i].v[2]};
-    }
-    typename Contact<Real>::Velocities after = *before_contact;
-    const double h = options_.frame_time / options_.substeps;
-    contact_.Apply(*state, pairs, input.geoms, substep * h, h, &after);
-    for (int i = 0; i < nodes_; ++i) {
-      for (int j = 0; j < 3; ++j) (*next)[i].v[j] = after[i][j];
-    }
-  }
+  const double h = options_.frame_time / options_.substeps;
+  contact_.Apply(*state, pairs, input.geoms, substep * h, h, next, impacts);
   kernel_->update_positions(Nodes(), state->data(), next->data());
 }
 
 template <class Real>
-void Simulator<Real>::SubstepAdjoint(const FrameInput& input,
-                                     const typename Contact<Real>::Pairs& pairs, int substep,
-                                     State* state_bar, Workspace* workspace) const {
+void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const {
   const State& state = workspace->states[substep];
   State& next = workspace->states[substep + 1];
+  const typename Contact<Real>::Impacts& impacts = workspace->impacts[substep];
   kernel_->update_positions_adjoint(Nodes(), state_bar->data());
-  if (contact_.Active(input.geoms.size())) {
-    typename Contact<Real>::Velocities velocity_bar(nodes_);
-    for (int i = 0; i < nodes_; ++i) {
-      velocity_bar[i] = {(*state_bar)[i].v[0], (*state_bar)[i].v[1], (*state_bar)[i].v[2]};
-    }
-    const typename Contact<Real>::Velocities& before = workspace->before_contact[substep];
-    ContactGradient<Real> gradient{state_bar->data(), workspace->contact_mass_gradient.data(), {}};
-    const double h = options_.frame_time / options_.substeps;
-    contact_.ApplyAdjoint(state, pairs, input.geoms, substep * h, h, before, &velocity_bar,
-                          &gradient);
-    workspace->contact_gradient.surface.restitution += gradient.laws.surface.restitution;
-    workspace->contact_gradient.surface.friction += gradient.laws.surface.friction;
-    workspace->contact_gradient.object.restitution += gradient.laws.object.restitution;
-    workspace->contact_gradient.object.friction += gradient.laws.object.friction;
-    for (int i = 0; i < nodes_; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        (*state_bar)[i].v[j] = velocity_bar[i][j];
-        next[i].v[j] = before[i][j];
-      }
-    }
-  }
+  contact_.ApplyAdjoint(state, impacts, state_bar, &workspace->contact_gradient);
+  contact_.Undo(impacts, &next);
   kernel_->update_velocities_adjoint(
       Nodes(), state.data(), next.data(), state_bar->data(), workspace->force.data(),
       {workspace->mass_gradient.data(), &workspace->drag_gradient, &workspace->gravity_gradient});
@@ -165,10 +135,9 @@ template <class Real>
 void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
                                    Workspace* workspace) const {
   const auto pairs = contact_.FindPairs(*state, options_.frame_time);
-  workspace->before_contact.resize(1);
+  workspace->impacts.resize(1);
   for (int i = 0; i < options_.substeps; ++i) {
-    Substep(input, pairs, i, state, &workspace->next, &workspace->before_contact[0],
-            &workspace->force);
+    Substep(input, pairs, i, state, &workspace->next, &workspace->impacts[0], &workspace->force);
     std::swap(*state, workspace->next);
   }
   PlaceControllers(input, options_.substeps - 1, state);
@@ -181,17 +150,17 @@ void Simulator<Real>::AdvanceFrameAdjoint(const State& start, const FrameInput& 
   const auto pairs = contact_.FindPairs(start, options_.frame_time);
   workspace->states.resize(options_.substeps + 1, State(start.size()));
   workspace->states[0] = start;
-  workspace->before_contact.resize(options_.substeps);
+  workspace->impacts.resize(options_.substeps);
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, pairs, i, &workspace->states[i], &workspace->states[i + 1],
-            &workspace->before_contact[i], &workspace->force);
+            &workspace->impacts[i], &workspace->force);
   }
 
   workspace->ClearGradients(nodes_);
   // controllers and the spare node feel no force: their entries stay 0
   std::fill(workspace->force.begin(), workspace->force.end(), NodeForce<Real>{});
   for (int i = options_.substeps - 1; i >= 0; --i) {
-    SubstepAdjoint(input, pairs, i, state_bar, workspace);
+    SubstepAdjoint(i, state_bar, workspace);
   }
   // the controllers' motion is given: what was added to them does not count
   std::fill(state_bar->begin() + nodes_, state_bar->end(), NodeState<Real>{});
@@ -202,9 +171,8 @@ template <class Real>
 void Simulator<Real>::Workspace::ClearGradients(int nodes) {
   spring_gradient.Clear();
   mass_gradient.assign(nodes, {});
-  contact_mass_gradient.assign(nodes, 0);
   drag_gradient = gravity_gradient = {};
-  contact_gradient = {};
+  contact_gradient = {std::vector<Real>(nodes, 0), {}};
 }
 
 template <class Real>
@@ -222,14 +190,14 @@ void Simulator<Real>::AddGradients(const Workspace& workspace, SystemGradient* g
   const double h = options_.frame_time / options_.substeps;
   for (int i = 0; i < nodes_; ++i) {
     const double inverse_mass = static_cast<double>(h_over_mass_[i]) / h;
-    gradient->mass[i] += static_cast<double>(workspace.contact_mass_gradient[i]) -
+    gradient->mass[i] += static_cast<double>(workspace.contact_gradient.mass[i]) -
                          sum(workspace.mass_gradient[i]) * inverse_mass;
   }
   gradient->drag -= h * sum(workspace.drag_gradient);
   for (int j = 0; j < 3; ++j) {
     gradient->gravity[j] += h * static_cast<double>(workspace.gravity_gradient.f[j]);
   }
-  const ContactLaws<Real>& laws = workspace.contact_gradient;
+  const ContactLaws<Real>& laws = workspace.contact_gradient.laws;
   gradient->contact.surface.restitution += static_cast<double>(laws.surface.restitution);
   gradient->contact.surface.friction += static_cast<double>(laws.surface.friction);
   gradient->contact.object.restitution += static_cast<double>(laws.object.restitution);

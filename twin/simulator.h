@@ -80,10 +80,9 @@ class Simulator {
  private:
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
   void Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs, int substep,
-               State* state, State* next, typename Contact<Real>::Velocities* before_contact,
+               State* state, State* next, typename Contact<Real>::Impacts* impacts,
                NodeForces<Real>* force) const;
-  void SubstepAdjoint(const FrameInput& input, const typename Contact<Real>::Pairs& pairs,
-                      int substep, State* state_bar, Workspace* workspace) const;
+  void SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const;
   void AddGradients(const Workspace& workspace, SystemGradient* gradient) const;
 
   NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
@@ -111,14 +110,13 @@ class Simulator<Real>::Workspace {
   State next;
   NodeForces<Real> force;
   std::vector<State> states;  // at the start of each sub-step of a frame, and at its end
-  std::vector<typename Contact<Real>::Velocities> before_contact;  // of each sub-step
+  std::vector<typename Contact<Real>::Impacts> impacts;  // of each sub-step
 
   // Sums over the sub-steps of a frame.
   SpringBlockGradient<Real> spring_gradient;
   NodeForces<Real> mass_gradient;  // this, drag and gravity: see node_update.h
   NodeForce<Real> drag_gradient, gravity_gradient;
-  std::vector<Real> contact_mass_gradient;
-  ContactLaws<Real> contact_gradient;
+  ContactGradient<Real> contact_gradient;
 };
 
 }  // namespace physpring

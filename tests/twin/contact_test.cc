@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,10 +24,13 @@ using Eigen::Vector3d;
 constexpr double kStep = 1e-3;     // h, s
 constexpr double kElapsed = 0.02;  // since the start of the frame, s
 
-NodeStates<double> StateAt(const Points& x) {
+NodeStates<double> StateAt(const Points& x, const Points& v) {
   NodeStates<double> state(x.cols());
   for (int i = 0; i < x.cols(); ++i) {
-    for (int j = 0; j < 3; ++j) state[i].x[j] = x(j, i);
+    for (int j = 0; j < 3; ++j) {
+      state[i].x[j] = x(j, i);
+      state[i].v[j] = v(j, i);
+    }
   }
   return state;
 }
@@ -46,18 +50,23 @@ struct Scene {
     system = Particles(apart, 0.1);
   }
 
-  Contact<double>::Velocities Velocities() const {
-    Contact<double>::Velocities velocities;
-    for (int i = 0; i < v.cols(); ++i) velocities.emplace_back(v.col(i));
-    return velocities;
-  }
   Points After() const {
-    Contact<double>::Velocities velocity = Velocities();
+    NodeStates<double> next = StateAt(x, v);
+    Contact<double>::Impacts impacts;
     Contact<double>(system, environment)
-        .Apply(StateAt(x), pairs, geoms, kElapsed, kStep, &velocity);
+        .Apply(StateAt(x, v), pairs, geoms, kElapsed, kStep, &next, &impacts);
     Points after(3, v.cols());
-    for (int i = 0; i < v.cols(); ++i) after.col(i) = velocity[i];
+    for (int i = 0; i < v.cols(); ++i) after.col(i) << next[i].v[0], next[i].v[1], next[i].v[2];
     return after;
+  }
+  // state_bar: the v in with respect to the velocities after, out before; adds to the x.
+  void AddGradient(NodeStates<double>* state_bar, ContactGradient<double>* gradient) const {
+    const Contact<double> contact(system, environment);
+    const NodeStates<double> state = StateAt(x, v);
+    NodeStates<double> next = state;
+    Contact<double>::Impacts impacts;
+    contact.Apply(state, pairs, geoms, kElapsed, kStep, &next, &impacts);
+    contact.ApplyAdjoint(state, impacts, state_bar, gradient);
   }
 };
 
@@ -71,23 +80,18 @@ std::vector<GradientReport> CheckGradients(Scene scene) {
     for (double term : bar.cwiseProduct(after).reshaped()) sum += term;
     return sum;
   };
-  NodeStates<double> state_bar(nodes);
-  std::vector<double> mass_bar(nodes, 0);
-  ContactGradient<double> gradient{state_bar.data(), mass_bar.data(), {}};
-  Contact<double>::Velocities v_bar;
-  for (int i = 0; i < nodes; ++i) v_bar.emplace_back(bar.col(i));
-  Contact<double>(scene.system, scene.environment)
-      .ApplyAdjoint(StateAt(scene.x), scene.pairs, scene.geoms, kElapsed, kStep, scene.Velocities(),
-                    &v_bar, &gradient);
+  NodeStates<double> state_bar = StateAt(Points::Zero(3, nodes), bar);
+  ContactGradient<double> gradient{std::vector<double>(nodes, 0), {}};
+  scene.AddGradient(&state_bar, &gradient);
 
   std::vector<CheckedVariable> x, v, mass;
   for (int i = 0; i < nodes; ++i) {
     for (int j = 0; j < 3; ++j) {
       const std::string name = fmt::format("{}.{}", i, j);
       x.push_back({"x" + name, &scene.x(j, i), 1e-6, state_bar[i].x[j]});
-      v.push_back({"v" + name, &scene.v(j, i), 1e-5, v_bar[i][j]});
+      v.push_back({"v" + name, &scene.v(j, i), 1e-5, state_bar[i].v[j]});
     }
-    mass.push_back({fmt::format("m{}", i), &scene.system.mass[i], 1e-5, mass_bar[i]});
+    mass.push_back({fmt::format("m{}", i), &scene.system.mass[i], 1e-5, gradient.mass[i]});
   }
   ContactCoefficients& c = scene.system.contact;
   const std::vector<CheckedVariable> laws = {
@@ -245,7 +249,8 @@ Scene Crowd() {
   Scene scene(x, -4 * x + random.Box(12, 0.1));
   scene.system.contact = {0, 0, 0.6, 0.2, 0.06};
   for (double& mass : scene.system.mass) mass = random(0.05, 0.2);
-  scene.pairs = Contact<double>(scene.system, scene.environment).FindPairs(StateAt(scene.x), 0.01);
+  scene.pairs = Contact<double>(scene.system, scene.environment)
+                    .FindPairs(StateAt(scene.x, Points::Zero(3, 12)), 0.01);
   return scene;
 }
 
@@ -289,7 +294,7 @@ TEST(Contact, ParticlesCollideWithinTheCollisionDistance) {
 }
 
 Contact<double>::Pairs PairsOf(const SpringMassSystem& system, const Points& x, double speed = 0) {
-  NodeStates<double> state = StateAt(x);
+  NodeStates<double> state = StateAt(x, Points::Zero(3, x.cols()));
   state[0].v[1] = speed;
   return Contact<double>(system, Weightless()).FindPairs(state, 0.01);
 }
@@ -321,31 +326,43 @@ TEST(Contact, WithoutACollisionDistanceThereAreNoPairs) {
   EXPECT_TRUE(PairsOf(Particles(Points::Zero(3, 4), 1), Points::Zero(3, 4)).empty());
 }
 
+TEST(Contact, UndoGivesTheVelocitiesBefore) {
+  Scene scene = Crowd();
+  scene.environment.ground = Eigen::Vector4d(0, 0, 1, -0.01);
+  const Contact<double> contact(scene.system, scene.environment);
+  const NodeStates<double> state = StateAt(scene.x, scene.v);
+  NodeStates<double> next = state;
+  Contact<double>::Impacts impacts;
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    contact.Apply(state, scene.pairs, {}, 0, kStep, &next, &impacts);
+    EXPECT_NE(0, std::memcmp(next.data(), state.data(), next.size() * sizeof(next[0])));
+    contact.Undo(impacts, &next);
+    EXPECT_EQ(0, std::memcmp(next.data(), state.data(), next.size() * sizeof(next[0])));
+  }
+}
+
 TEST(ContactAdjoint, AddsToWhatIsThere) {
   const Scene scene = Crowd();
-  const Contact<double> contact(scene.system, scene.environment);
   NodeStates<double> state_bar(12);
-  std::vector<double> mass_bar(12, 0);
-  ContactGradient<double> gradient{state_bar.data(), mass_bar.data(), {}};
+  ContactGradient<double> gradient{std::vector<double>(12, 0), {}};
   const auto add = [&] {
-    Contact<double>::Velocities v_bar(12, Vector3d(1, 2, 3));
-    v_bar[3] = {-3, 2, 1};
-    contact.ApplyAdjoint(StateAt(scene.x), scene.pairs, {}, 0, kStep, scene.Velocities(), &v_bar,
-                         &gradient);
+    for (NodeState<double>& bar : state_bar) std::copy_n(std::array{1., 2., 3.}.data(), 3, bar.v);
+    state_bar[3].v[0] = -3;
+    scene.AddGradient(&state_bar, &gradient);
   };
   add();
   const NodeStates<double> once = state_bar;
-  const std::vector<double> mass_once = mass_bar;
+  const ContactGradient<double> gradient_once = gradient;
   const ContactPair<double> law_once = gradient.laws.object;
   EXPECT_NE(law_once.restitution, 0);
-  EXPECT_NE(mass_once[3], 0);
+  EXPECT_NE(gradient_once.mass[3], 0);
   add();
   const auto twice = [](double once_value) { return 1e-12 * (1 + std::abs(once_value)); };
   for (int i = 0; i < 12; ++i) {
     for (int j = 0; j < 3; ++j) {
       EXPECT_NEAR(state_bar[i].x[j], 2 * once[i].x[j], twice(once[i].x[j]));
     }
-    EXPECT_NEAR(mass_bar[i], 2 * mass_once[i], twice(mass_once[i]));
+    EXPECT_NEAR(gradient.mass[i], 2 * gradient_once.mass[i], twice(gradient_once.mass[i]));
   }
   EXPECT_NEAR(gradient.laws.object.restitution, 2 * law_once.restitution, 1e-12);
   EXPECT_NEAR(gradient.laws.object.friction, 2 * law_once.friction, 1e-12);
