@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program `physpring`. Exit status: 0 done, 1 failed (one line on stderr), 2 bad usage.
+// The program `physpring`. Exit status: 0 done, 1 failed (one line on stderr), 2 bad usage, 128 + n
+// stopped by signal n (after Ctrl-C 130).
 #include <cstdio>
 #include <exception>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);
   physpring::AddRecordCommand(app);
+  physpring::AddTrainCommand(app);
   physpring::AddEvalCommand(app);
   physpring::AddInfoCommand(app);
   physpring::AddDoctorCommand(app);
@@ -18,6 +21,8 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {  // also how --help and --version end
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const physpring::Interrupted& interrupted) {
+    return 128 + interrupted.signal;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "physpring: %s\n", error.what());
     return 1;

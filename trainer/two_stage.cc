@@ -126,10 +126,11 @@ void TwoStageFit::StepFirstOrder() {
   first_order_->Pass(data_.recordings, RolloutOptionsFor(first_order_->Current()),
                      options_.threads);
   status_ = first_order_->diverged()
-                ? fmt::format("pass {} diverged", first_order_->passes() + 1)
+                ? fmt::format("single springs, pass {} diverged; {}", first_order_->passes() + 1,
+                              DescribeBest())
                 : fmt::format("single springs, pass {} of {}: loss {:.3e} m^2",
                               first_order_->passes(), passes_, first_order_->last_loss());
-  if (first_order_->done()) status_ += "; " + DescribeBest();
+  if (first_order_->done() && !first_order_->diverged()) status_ = DescribeBest();
 }
 
 std::string TwoStageFit::DescribeBest() const {

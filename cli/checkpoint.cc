@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/checkpoint.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFinished = "train/finished";
+
+Json NumberOrAuto(int number) { return number > 0 ? Json(number) : Json("auto"); }
+
+// Everything that the result depends on, but the seed, which has a place of its own. Not the number
+// of threads.
+std::string OptionsJson(const TrainOptions& options) {
+  Json json;
+  json["method"] = options.method == TrainOptions::Method::kFull ? "full" : "two-stage";
+  json["optimizer"] = options.optimizer == TrainOptions::Optimizer::kAutomatic     ? "auto"
+                      : options.optimizer == TrainOptions::Optimizer::kGaussNewton ? "gauss-newton"
+                                                                                   : "adam";
+  json["levels"] = 1;
+  json["neighbours"] = options.neighbours.empty() ? Json("auto") : Json(options.neighbours);
+  json["epochs"] = NumberOrAuto(options.epochs);
+  json["substeps"] = NumberOrAuto(options.substeps);
+  json["precision"] = options.single_precision ? "float" : "double";
+  json["controller_velocity"] = options.controller_velocity ? "on" : "off";
+  json["self_collision"] = options.self_collision ? "on" : "off";
+  return json.dump();
+}
+
+// "a/rope.twin.npz" -> "rope"
+std::string NameOfTwin(const std::string& path) {
+  std::string name = fs::path(path).filename().string();
+  for (const char* extension : {".npz", ".twin"}) {
+    if (name.ends_with(extension)) name.resize(name.size() - std::string(extension).size());
+  }
+  return name;
+}
+
+bool IsFinished(const Twin& twin) {
+  const auto finished = twin.training_state.find(kFinished);
+  // a twin from elsewhere has no training to go on with
+  return finished == twin.training_state.end() || finished->second.ToInts() == std::vector<int>{1};
+}
+
+bool Exists(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options)
+    : path_(path) {
+  labels_.name = NameOfTwin(path);
+  for (const Recording& recording : data.recordings) {
+    labels_.trained_on.push_back({recording.name, recording.hash, recording.train_frames});
+  }
+  labels_.options_json = OptionsJson(options);
+  labels_.seed = options.seed;
+}
+
+void Checkpoint::ExpectWritable(bool force) const {
+  const fs::path folder = fs::path(path_).parent_path();
+  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0) {
+    throw Error(
+        fmt::format("{}: cannot be written: its folder is missing or write-protected", path_));
+  }
+  if (!Exists(path_)) return;
+  Twin twin;
+  try {
+    twin = ReadTwin(path_);
+  } catch (const Error&) {
+    throw Error(fmt::format("{}: is there and no twin; choose another name", path_));
+  }
+  if (force) return;
+  throw Error(fmt::format("{}: {}", path_,
+                          IsFinished(twin)
+                              ? "is a finished twin; --force trains it anew"
+                              : "is an unfinished twin; --resume goes on with it, --force trains "
+                                "it anew"));
+}
+
+void Checkpoint::ExpectSameTraining(const Twin& twin) const {
+  const auto expect_same = [&](const std::string& what, const auto& in_file, const auto& now) {
+    if (in_file == now) return;
+    throw Error(
+        fmt::format("{}: was trained with {} {}, not {}; resume with what it was trained "
+                    "with",
+                    path_, what, in_file, now));
+  };
+  const Json in_file = Json::parse(twin.options_json), now = Json::parse(labels_.options_json);
+  for (const auto& [key, value] : now.items()) {
+    expect_same(key, in_file.value(key, Json()).dump(), value.dump());
+  }
+  expect_same("seed", twin.seed, labels_.seed);
+  expect_same("number of recordings", twin.trained_on.size(), labels_.trained_on.size());
+  for (std::size_t i = 0; i < labels_.trained_on.size(); ++i) {
+    const TrainedOn &before = twin.trained_on[i], &here = labels_.trained_on[i];
+    if (before.hash == here.hash) continue;
+    throw Error(
+        fmt::format("{}: recording {} was {} with hash {}, not {} with hash {}; resume "
+                    "with the recordings it was trained on",
+                    path_, i + 1, before.name, before.hash, here.name, here.hash));
+  }
+}
+
+void Checkpoint::Resume(Fitter* fitter) const {
+  if (!Exists(path_)) return;
+  const Twin twin = ReadTwin(path_);
+  ExpectSameTraining(twin);
+  try {
+    fitter->Load(twin.training_state);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path_, error.what()));
+  }
+}
+
+Twin Checkpoint::Write(const Fitter& fitter, bool finished) const {
+  Twin twin = fitter.Result();
+  twin.name = labels_.name;
+  twin.trained_on = labels_.trained_on;
+  twin.options_json = labels_.options_json;
+  twin.seed = labels_.seed;
+  twin.training_state = fitter.Save();
+  const int flag = finished ? 1 : 0;
+  twin.training_state[kFinished] = NpzArray::Ints({}, &flag);
+  WriteTwin(twin, path_);
+  return twin;
+}
+
+}  // namespace physpring

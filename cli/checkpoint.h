@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A twin file as the checkpoint of the training that writes it: the twin so far, with the state
+// that the training goes on from, and with what it was trained on and how.
+#ifndef PHYSPRING_CLI_CHECKPOINT_H_
+#define PHYSPRING_CLI_CHECKPOINT_H_
+
+#include <string>
+
+#include "trainer/fitter.h"
+#include "trainer/train_options.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+class Checkpoint {
+ public:
+  // Of the training on `data` with `options` that writes to `path`.
+  Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options);
+
+  // Throws Error if a twin could not be written to the path, or if there is a file that would be
+  // overwritten without `force`.
+  void ExpectWritable(bool force) const;
+
+  // Leads `fitter` to where the file left it; does nothing if there is no file. Throws Error if the
+  // file is no twin, or one of other recordings or other options (naming the first that differs).
+  void Resume(Fitter* fitter) const;
+
+  // Writes the file, atomically, and returns what is in it.
+  Twin Write(const Fitter& fitter, bool finished) const;
+
+ private:
+  void ExpectSameTraining(const Twin& twin) const;
+
+  std::string path_;
+  Twin labels_;  // only name, trained_on, options_json and seed are set
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_CHECKPOINT_H_

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ctrl-C (SIGINT) and SIGTERM as a wish to stop soon. A second one ends the program at once.
+#ifndef PHYSPRING_CLI_INTERRUPT_H_
+#define PHYSPRING_CLI_INTERRUPT_H_
+
+#include <signal.h>
+
+namespace physpring {
+
+// Thrown by a command that stopped early because of a signal and has said so: the program ends with
+// status 128 + signal, as is usual.
+struct Interrupted {
+  int signal;
+};
+
+// While it lives, the first signal is only noted. One at a time.
+class InterruptWatch {
+ public:
+  InterruptWatch();
+  ~InterruptWatch();
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+  // The signal that came, or 0.
+  int signal() const;
+
+ private:
+  struct sigaction old_interrupt_, old_terminate_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_INTERRUPT_H_

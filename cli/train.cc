@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring train: recordings of one object -> a twin.
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/null_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/checkpoint.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/training.h"
+#include "trainer/fit_data.h"
+#include "trainer/make_fitter.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> recordings;
+  std::string output, log;
+  std::string method = "full", optimizer = "auto", precision = "double", velocity = "on";
+  TrainOptions options;  // without what is a word above
+  bool resume = false, force = false;
+  double checkpoint_interval = 10;  // s
+};
+
+TrainOptions OptionsOf(const Arguments& arguments) {
+  using Optimizer = TrainOptions::Optimizer;
+  const bool two_stage = arguments.method == "two-stage";
+  TrainOptions options = arguments.options;
+  options.method = two_stage ? TrainOptions::Method::kTwoStage : TrainOptions::Method::kFull;
+  options.optimizer = arguments.optimizer == "auto"   ? Optimizer::kAutomatic
+                      : arguments.optimizer == "adam" ? Optimizer::kAdam
+                                                      : Optimizer::kGaussNewton;
+  options.single_precision = arguments.precision == "float";
+  options.controller_velocity = arguments.velocity == "on";
+  if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
+
+  const auto expect = [](bool right, const char* flag, const char* what) {
+    if (!right) throw CLI::ValidationError(flag, what);
+  };
+  const bool counts = std::count(options.neighbours.begin(), options.neighbours.end(), 0) == 0;
+  expect(counts, "--neighbours", "takes counts or auto, not both");
+  expect(!two_stage || options.neighbours.empty(), "--neighbours", "is chosen by two-stage itself");
+  expect(!two_stage || arguments.optimizer == "auto", "--optimizer", "is of --method full");
+  expect(two_stage || !options.self_collision, "--self-collision", "is of --method two-stage");
+  return options;
+}
+
+// Each step a line of the file with the time; without a file nowhere.
+void OpenLog(const std::string& path, bool append) {
+  try {
+    const auto logger = path.empty() ? spdlog::null_logger_mt("train")
+                                     : spdlog::basic_logger_mt("train", path, !append);
+    logger->set_pattern("%Y-%m-%d %H:%M:%S  %v");
+    logger->flush_on(spdlog::level::info);
+    spdlog::set_default_logger(logger);
+  } catch (const spdlog::spdlog_ex& error) {
+    throw Error(fmt::format("{}: cannot be written: {}", path, error.what()));
+  }
+}
+
+void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
+                 const std::string& status, double seconds) {
+  const TwinLevel& level = run.twin.levels[0];
+  fmt::print("{}: level 0 with {} nodes, {} springs, {:.4g} sub-steps a frame\n", output,
+             level.system.node_count(), level.system.spring_count(),
+             level.substeps_per_second / run.twin.fps);
+  fmt::print("{}\n", fit_error);
+  if (!status.empty()) fmt::print("{}\n", status);
+  fmt::print("time: {}, of it {} fitting, {} writing checkpoints\n", FormatDuration(seconds),
+             FormatDuration(run.fit_seconds), FormatDuration(run.checkpoint_seconds));
+}
+
+void Run(const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const TrainOptions options = OptionsOf(arguments);
+  const FitData data = ReadFitData(arguments.recordings);
+  const Checkpoint checkpoint(arguments.output, data, options);
+  checkpoint.ExpectWritable(arguments.resume || arguments.force);
+  const std::unique_ptr<Fitter> fitter = MakeFitter(data, options);
+  if (arguments.resume) checkpoint.Resume(fitter.get());
+  OpenLog(arguments.log, arguments.resume);
+  for (const Recording& recording : data.recordings) {
+    for (const std::string& warning : recording.warnings) {
+      fmt::print(stderr, "warning: {}\n", warning);
+      spdlog::info("warning: {}", warning);
+    }
+  }
+
+  const TrainingRun run = RunTraining(fitter.get(), checkpoint, arguments.checkpoint_interval);
+  if (!run.finished) {
+    fmt::print(stderr,
+               "physpring: stopped at {:.0f} %; the same command with --resume goes on "
+               "from {}\n",
+               100 * fitter->Progress(), arguments.output);
+    throw Interrupted{run.signal};
+  }
+  const std::string fit_error =
+      DescribeFitError(run.twin, data, options.single_precision, options.threads);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  PrintReport(arguments.output, run, fit_error, fitter->Status(), elapsed.count());
+}
+
+CLI::Validator OneLevel() {
+  return CLI::Validator(
+      [](std::string& levels) {
+        return levels == "1"
+                   ? ""
+                   : fmt::format("only level 0 can be trained so far, not {} levels", levels);
+      },
+      "");
+}
+
+// A number from 1, or auto: 0.
+CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,
+                             const std::string& description) {
+  return command->add_option(name, *number, description)
+      ->transform(CLI::Transformer(std::map<std::string, int>{{"auto", 0}}))
+      ->check(CLI::Range(0, 1000000))
+      ->type_name("N|auto")
+      ->default_str("auto");
+}
+
+CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
+                       const std::vector<std::string>& choices, const std::string& description) {
+  return command->add_option(name, *choice, description)
+      ->check(CLI::IsMember(choices))
+      ->type_name("")
+      ->capture_default_str();
+}
+
+void AddFitOptions(CLI::App* command, Arguments* arguments) {
+  TrainOptions& options = arguments->options;
+  AddChoice(command, "--method", &arguments->method, {"full", "two-stage"},
+            "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
+  command->add_option("--levels", "levels of the twin; only 1 so far: the hierarchy is to come")
+      ->check(OneLevel())
+      ->type_name("N")
+      ->default_str("1");
+  command
+      ->add_option("--neighbours", options.neighbours,
+                   "springs of a particle; of several the best on held-back frames (full)")
+      ->delimiter(',')
+      ->transform(CLI::Transformer(std::map<std::string, int>{{"auto", 0}}))
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N[,N...]|auto")
+      ->default_str("auto");
+  AddChoice(command, "--optimizer", &arguments->optimizer, {"auto", "gauss-newton", "adam"},
+            "of single springs (full)");
+  AddNumberOrAuto(command, "--epochs", &options.epochs, "steps of the last stage");
+  AddNumberOrAuto(command, "--substeps", &options.substeps,
+                  "sub-steps of a frame; auto: as many as are stable");
+  AddChoice(command, "--precision", &arguments->precision, {"double", "float"},
+            "of the simulation");
+  AddChoice(command, "--controller-velocity", &arguments->velocity, {"on", "off"},
+            "whether dashpots feel the controllers' velocity (PhysTwin: off)");
+  command->add_flag("--self-collision", options.self_collision,
+                    "let particles collide with each other (two-stage)");
+  command->add_option("--seed", options.seed, "of random numbers")->capture_default_str();
+}
+
+}  // namespace
+
+void AddTrainCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "train", "Learns a twin of an object from recordings of it. Ctrl-C leaves a checkpoint.");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("recordings", arguments->recordings,
+                   "recordings, or folders with a dataset.json (their `fit` ones)")
+      ->required()
+      ->type_name("REC.npz|DIR");
+  command->add_option("-o,--output", arguments->output, "twin to write")
+      ->required()
+      ->type_name("NAME.twin.npz");
+  AddFitOptions(command, arguments.get());
+  arguments->options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  command
+      ->add_option("--threads", arguments->options.threads,
+                   "at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  CLI::Option* const resume = command->add_flag("--resume", arguments->resume,
+                                                "go on from the output file, if there is one");
+  command->add_flag("--force", arguments->force, "overwrite a twin")->excludes(resume);
+  command
+      ->add_option("--checkpoint", arguments->checkpoint_interval,
+                   "seconds between checkpoints, at least")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--log", arguments->log, "write a line for each step")->type_name("FILE");
+  command->callback([arguments] { Run(*arguments); });
+}
+
+}  // namespace physpring

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/training.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <vector>
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "trainer/parallel.h"
+#include "twin/evaluate.h"
+
+namespace physpring {
+namespace {
+
+// Seconds since it was made.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+// Mean over the recordings that have data, m.
+struct TrackMean {
+  double sum = 0;
+  int count = 0;
+
+  void Add(const MeanError& error) {
+    sum += error.value.value_or(0);
+    count += error.value.has_value();
+  }
+  std::string InMillimetres() const {
+    return count > 0 ? fmt::format("{:.3f} mm", 1e3 * sum / count) : "no data";
+  }
+};
+
+}  // namespace
+
+TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double interval) {
+  const InterruptWatch interrupt;
+  Progress progress(fitter->Progress());
+  TrainingRun run;
+  const auto write = [&] {
+    const Stopwatch writing;
+    run.twin = checkpoint.Write(*fitter, run.finished);
+    run.checkpoint_seconds += writing.seconds();
+    spdlog::info("checkpoint written in {:.2f} s", writing.seconds());
+  };
+  Stopwatch since_checkpoint;
+  while (!run.finished && interrupt.signal() == 0) {
+    const Stopwatch step;
+    run.finished = !fitter->Step();
+    run.fit_seconds += step.seconds();
+    if (run.finished) break;
+    spdlog::info("{:5.1f} %  {}", 100 * fitter->Progress(), fitter->Status());
+    progress.Show(fitter->Progress(), fitter->Status());
+    if (since_checkpoint.seconds() < interval) continue;
+    write();
+    since_checkpoint = Stopwatch();
+  }
+  run.signal = interrupt.signal();
+  write();
+  return run;
+}
+
+std::string DescribeFitError(const Twin& twin, const FitData& data, bool single_precision,
+                             int threads) {
+  const int count = static_cast<int>(data.recordings.size());
+  std::vector<ErrorMeans> fitted(count), motionless(count);
+  ParallelFor(count, threads, [&](int i) {
+    const Recording& recording = data.recordings[i];
+    const RecordingResult result = Evaluate(twin, recording, {single_precision, 0});
+    fitted[i] = MeansOverFrames(result.levels[0].direct, 1, recording.train_frames);
+    motionless[i] = MeansOverFrames(result.motionless, 1, recording.train_frames);
+  });
+  TrackMean fit, still;
+  for (int i = 0; i < count; ++i) {
+    fit.Add(fitted[i].track);
+    still.Add(motionless[i].track);
+  }
+  return fmt::format("track error on the fit frames: {} (a motionless body: {})",
+                     fit.InMillimetres(), still.InMillimetres());
+}
+
+}  // namespace physpring

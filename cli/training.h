@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A training run: steps of a fit with progress, log and checkpoints, until it is done or a signal
+// asks it to stop.
+#ifndef PHYSPRING_CLI_TRAINING_H_
+#define PHYSPRING_CLI_TRAINING_H_
+
+#include <string>
+
+#include "cli/checkpoint.h"
+#include "trainer/fitter.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+struct TrainingRun {
+  Twin twin;                      // as written
+  bool finished = false;          // else a signal came first
+  int signal = 0;                 // that came
+  double fit_seconds = 0;         // in steps
+  double checkpoint_seconds = 0;  // in writing
+};
+
+// Writes `checkpoint` at most every `interval` seconds, and at the end. Each step and checkpoint is
+// a line of the log (spdlog's default logger).
+TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double interval);
+
+// How far the twin is from the fit frames of its recordings, next to a body that does not move; one
+// line. Throws Error if it diverges.
+std::string DescribeFitError(const Twin& twin, const FitData& data, bool single_precision,
+                             int threads);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_TRAINING_H_

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// `physpring train` as a user sees it, on tiny recordings.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "tests/support/program.h"
+#include "tests/support/running_program.h"
+#include "tests/support/swung_rope.h"
+#include "tests/support/temporary_folder.h"
+#include "trainer/phystwin_variables.h"
+#include "twin/atomic_file.h"
+#include "twin/twin.h"
+
+namespace physpring {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr std::chrono::milliseconds kSoon{20};
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+class Train : public testing::Test {
+ protected:
+  Train() {
+    WriteRecording(MovingRope(8, 12), rope_);
+    WriteRecording(MovingRope(8, 10), other_);
+  }
+
+  // A rope that moves as springs do.
+  static Recording MovingRope(int particles, int frames) {
+    Recording recording = SwungRope(particles, frames);
+    PhysTwinVariables variables = FromUnitCube(PhysTwinStart(), 2);
+    variables.spring_y = 1e4;
+    MoveAs(MakePhysTwinSystem(recording, variables, false), true, &recording);
+    return recording;
+  }
+
+  // Arguments of a short training that takes a second or less.
+  Words Short(const std::string& method) const {
+    Words arguments = {"train", rope_, other_, "-o", twin_, "--method", method, "--seed", "7"};
+    return arguments + (method == "full" ? Words{"--epochs", "3", "--neighbours", "4,6"}
+                                         : Words{"--epochs", "30"});
+  }
+
+  // The twin file of Short, trained without a break.
+  std::string Uninterrupted(const std::string& method) const {
+    const ProgramResult result = RunProgram(Short(method) + Words{"--threads", "1"});
+    EXPECT_EQ(result.status, 0) << result.errors;
+    const std::string bytes = ReadFile(twin_);
+    std::filesystem::remove(twin_);
+    return bytes;
+  }
+
+  TemporaryFolder folder_;
+  std::string rope_ = folder_.File("rope.npz"), other_ = folder_.File("other.npz");
+  std::string twin_ = folder_.File("rope.twin.npz"), output_ = folder_.File("output");
+};
+
+class TrainBy : public Train, public testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, TrainBy, testing::Values("full", "two-stage"),
+                         [](const auto& test) {
+                           return std::string(test.param) == "full" ? "Full" : "TwoStage";
+                         });
+
+TEST_P(TrainBy, WritesATwinAndAReport) {
+  const ProgramResult result = RunProgram(Short(GetParam()));
+  EXPECT_EQ(result.status, 0) << result.errors;
+  for (const char* part : {"level 0 with 8 nodes, ", "track error on the fit frames: ", "time: "}) {
+    EXPECT_NE(result.output.find(part), std::string::npos) << part << result.output;
+  }
+  const Twin twin = ReadTwin(twin_);
+  EXPECT_EQ(twin.name, "rope");
+  EXPECT_EQ(twin.points, 8);
+  EXPECT_EQ(twin.seed, 7u);
+  ASSERT_EQ(twin.trained_on.size(), 2u);
+  EXPECT_EQ(twin.trained_on[1].name, "other");
+  EXPECT_EQ(twin.trained_on[1].hash, HashFile(other_));
+  EXPECT_EQ(twin.trained_on[1].train_frames, 10);
+  const auto options = nlohmann::json::parse(twin.options_json);
+  EXPECT_EQ(options["method"], GetParam());
+  EXPECT_EQ(options["substeps"], "auto");
+}
+
+TEST_P(TrainBy, WritesTheSameBytesForAnyNumberOfThreads) {
+  const std::string one = Uninterrupted(GetParam());
+  EXPECT_EQ(RunProgram(Short(GetParam()) + Words{"--threads", "2"}).status, 0);
+  EXPECT_TRUE(ReadFile(twin_) == one);
+}
+
+// Killed or interrupted at random moments, with many checkpoints, and resumed with
+// one or two threads.
+TEST_P(TrainBy, WritesTheSameBytesHoweverOftenItIsStopped) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string whole = Uninterrupted(GetParam());
+  const std::chrono::duration<double> usual = std::chrono::steady_clock::now() - start;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0, 0.5);
+  const Words resume = Short(GetParam()) + Words{"--checkpoint", "0.01", "--resume", "--threads"};
+  for (int i = 0; i < 6; ++i) {
+    RunningProgram program(resume + Words{i % 2 == 0 ? "1" : "2"}, output_);
+    std::this_thread::sleep_for(part(random) * usual);
+    program.Signal(i % 3 == 2 ? SIGINT : SIGKILL);
+    program.Wait();
+    if (std::filesystem::exists(twin_)) ReadTwin(twin_);  // throws if it is not whole
+  }
+  const ProgramResult result = RunProgram(resume + Words{"1"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_TRUE(ReadFile(twin_) == whole);
+}
+
+TEST_F(Train, LeavesACheckpointWhenInterrupted) {
+  const Words words = {"train",     rope_,          "-o", twin_,      "--method",
+                       "two-stage", "--checkpoint", "0",  "--epochs", "1000000"};
+  const auto interrupt = [&](const Words& more) {
+    std::filesystem::file_time_type before{};
+    if (std::filesystem::exists(twin_)) before = std::filesystem::last_write_time(twin_);
+    RunningProgram program(words + more, output_);
+    do {
+      std::this_thread::sleep_for(kSoon);
+    } while (!std::filesystem::exists(twin_) || std::filesystem::last_write_time(twin_) == before);
+    program.Signal(SIGINT);
+    EXPECT_EQ(program.Wait(), 130) << ReadFile(output_);
+    EXPECT_NE(ReadFile(output_).find("the same command with --resume goes on from " + twin_),
+              std::string::npos)
+        << ReadFile(output_);
+    EXPECT_NO_THROW(ReadTwin(twin_));
+  };
+  interrupt({});
+  EXPECT_TRUE(FailsWith(RunProgram(words), twin_ + ": is an unfinished twin; --resume goes on"));
+  interrupt({"--resume"});
+}
+
+TEST_F(Train, StopsOnATermination) {
+  RunningProgram program({"train", rope_, "-o", twin_, "--method", "two-stage", "--checkpoint", "0",
+                          "--epochs", "1000000"},
+                         output_);
+  while (!std::filesystem::exists(twin_)) std::this_thread::sleep_for(kSoon);
+  program.Signal(SIGTERM);
+  EXPECT_EQ(program.Wait(), 128 + SIGTERM);
+}
+
+TEST_F(Train, OverwritesAFinishedTwinOnlyByForce) {
+  const Words words = Short("two-stage");
+  ASSERT_EQ(RunProgram(words).status, 0);
+  const std::string bytes = ReadFile(twin_);
+  EXPECT_TRUE(FailsWith(RunProgram(words), twin_ + ": is a finished twin; --force"));
+  EXPECT_TRUE(ReadFile(twin_) == bytes);
+  EXPECT_EQ(RunProgram(words + Words{"--force"}).status, 0);
+  EXPECT_TRUE(ReadFile(twin_) == bytes);
+  const ProgramResult resumed = RunProgram(words + Words{"--resume"});
+  EXPECT_EQ(resumed.status, 0) << resumed.errors;
+  EXPECT_TRUE(ReadFile(twin_) == bytes);
+}
+
+TEST_F(Train, NeverOverwritesWhatIsNoTwin) {
+  const std::string bytes = ReadFile(rope_);
+  for (const char* flag : {"--force", "--resume"}) {
+    EXPECT_TRUE(FailsWith(RunProgram({"train", rope_, "-o", rope_, flag}),
+                          rope_ + ": is there and no twin"))
+        << flag;
+  }
+  EXPECT_TRUE(ReadFile(rope_) == bytes);
+}
+
+TEST_F(Train, ResumesOnlyWhatWasTrainedTheSameWay) {
+  const Words words = Short("two-stage") + Words{"--resume"};
+  ASSERT_EQ(RunProgram(words).status, 0);
+  const auto fails = [&](const Words& more, const std::string& part) {
+    Words changed = words;
+    for (std::size_t i = 0; i + 1 < more.size(); i += 2) {
+      const auto flag = std::find(changed.begin(), changed.end(), more[i]);
+      if (flag == changed.end()) {
+        changed = changed + Words{more[i], more[i + 1]};
+      } else {
+        flag[1] = more[i + 1];
+      }
+    }
+    const ProgramResult result = RunProgram(changed);
+    EXPECT_TRUE(FailsWith(result, part)) << result.errors;
+  };
+  fails({"--epochs", "31"}, twin_ + ": was trained with epochs 30, not 31");
+  fails({"--seed", "8"}, ": was trained with seed 7, not 8");
+  fails({"--precision", "float"}, ": was trained with precision \"double\", not \"float\"");
+  fails({"--method", "full"}, ": was trained with method \"two-stage\", not \"full\"");
+  WriteRecording(MovingRope(8, 11), other_);
+  fails({}, ": recording 2 was other with hash ");
+}
+
+TEST_F(Train, RefusesRecordingsOfDifferentObjects) {
+  WriteRecording(SwungRope(9, 5), other_);
+  EXPECT_TRUE(FailsWith(RunProgram({"train", rope_, other_, "-o", twin_}),
+                        other_ + ": has 9 points, but " + rope_ + " has 8; expected recordings"));
+  Recording slower = SwungRope(8, 5);
+  slower.fps = 25;
+  WriteRecording(slower, other_);
+  EXPECT_TRUE(FailsWith(RunProgram({"train", rope_, other_, "-o", twin_}),
+                        other_ + ": has 25 frames a second, but " + rope_ + " has 50"));
+  EXPECT_FALSE(std::filesystem::exists(twin_));
+}
+
+TEST_F(Train, FailsInOneLineAndWritesNothing) {
+  const auto fails = [&](const Words& words, const std::string& part) {
+    const ProgramResult result = RunProgram(words);
+    EXPECT_TRUE(FailsWith(result, part)) << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(twin_)) << part;
+  };
+  fails({"train", folder_.File("none.npz"), "-o", twin_}, "none.npz: does not exist");
+  fails({"train", rope_, rope_, "-o", twin_}, "rope.npz: is given twice");
+  fails({"train", rope_, "-o", folder_.File("none/rope.twin.npz")},
+        "none/rope.twin.npz: cannot be written: its folder is missing");
+  fails({"train", rope_, "-o", twin_, "--log", folder_.path()},
+        folder_.path() + ": cannot be written");
+  fails({"train", rope_, "-o", twin_, "--method", "two-stage", "--substeps", "1"},
+        "the motion diverges with every start value tried; 1 sub-steps a frame are too few");
+  Recording two = SwungRope(8, 5);
+  two.start.leftCols(4).row(0).array() += 1;
+  two.points[0] = two.start.leftCols(8);
+  WriteRecording(two, rope_);
+  fails({"train", rope_, "-o", twin_, "--method", "two-stage"},
+        "the particles fall into separate objects");
+}
+
+TEST_F(Train, RefusesBadUsage) {
+  const auto refused = [&](const Words& more, const std::string& part) {
+    const ProgramResult result = RunProgram(Words{"train", rope_, "-o", twin_} + more);
+    EXPECT_EQ(result.status, 2) << part;
+    EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
+  };
+  refused({"--levels", "4"}, "only level 0 can be trained so far, not 4 levels");
+  refused({"--method", "three-stage"}, "--method");
+  refused({"--epochs", "-1"}, "--epochs");
+  refused({"--neighbours", "8,many"}, "--neighbours");
+  refused({"--neighbours", "8", "--method", "two-stage"}, "--neighbours: is chosen by two-stage");
+  refused({"--self-collision"}, "--self-collision: is of --method two-stage");
+  refused({"--resume", "--force"}, "--resume excludes --force");
+}
+
+TEST_F(Train, LogsEveryStep) {
+  const std::string log = folder_.File("log");
+  ASSERT_EQ(RunProgram(Short("two-stage") + Words{"--log", log}).status, 0);
+  const std::string text = ReadFile(log);
+  EXPECT_NE(text.find("search, generation 20 of 20, candidate 11 of 11: loss"), std::string::npos);
+  EXPECT_NE(text.find("single springs, pass 29 of 30: loss"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace physpring
