@@ -102,8 +102,8 @@ TEST_F(Eval, SplitsTheRecordingItWasTrainedOn) {
   const Json level = EvalToJson({swing_})["levels"][1];
   EXPECT_EQ(level["fit"]["frames"]["track"], 13);        // 1 .. 13
   EXPECT_EQ(level["prediction"]["frames"]["track"], 6);  // 14 .. 19
-  const std::vector<double>& track =
-      Evaluate(twin_, ReadRecording(swing_), {}).levels[1].direct.track;
+  const RecordingResult expected = Evaluate(twin_, ReadRecording(swing_), {});
+  const std::vector<double>& track = expected.levels[1].direct.track;
   EXPECT_EQ(level["fit"]["track"], MeanOverFrames(track, 1, 14).value.value());
   EXPECT_EQ(level["prediction"]["track"], MeanOverFrames(track, 14, kFrames).value.value());
 }
