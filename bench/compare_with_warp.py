@@ -23,7 +23,7 @@ import sys
 WARP = "warp-lang==1.19.0"
 BENCH = pathlib.Path(__file__).resolve().parent
 ROOT = BENCH.parent
-OURS = f"{ROOT}/build/release/bench/spring_benchmark"
+OURS = f"{ROOT}/build/release/bench/time_twin"
 OPTIONS = "{twin} --substeps {substeps} --precision {precision}"
 LOSS_TOLERANCE = 1e-2  # relative; rounding moves the sub-step of a contact
 DIRECTIONS = ("forward", "gradient")

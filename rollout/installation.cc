@@ -12,6 +12,7 @@
 
 #include "rollout/mujoco_log.h"
 #include "twin/error.h"
+#include "twin/kernel_choice.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // Mesa never frees what OSMesaMakeCurrent allocates.
@@ -119,6 +120,14 @@ Finding OffScreenGl() {
   return {"OSMesa", "not found", "pictures cannot be made; install libosmesa6"};
 }
 
+Finding SubstepKernel() {
+  try {
+    return {"sub-steps", fmt::format("kernel {}", BestKernel<double>().name)};
+  } catch (const Error& error) {
+    return {"sub-steps", "no kernel", error.what(), true};
+  }
+}
+
 Finding Processor() {
 #if defined(__x86_64__)
   const auto word = [](int supported) { return supported ? "yes" : "no"; };
@@ -139,7 +148,8 @@ std::vector<Finding> InspectInstallation() {
           Mujoco(),
           Plugins(),
           OffScreenGl(),
-          Processor()};
+          Processor(),
+          SubstepKernel()};
 }
 
 }  // namespace physpring

@@ -23,20 +23,6 @@ constexpr Kernel<Real> kScalar = {"scalar",
                                   UpdatePositions<Real>,
                                   UpdatePositionsAdjoint<Real>};
 
-const char* ChooseKernel() {
-  const char* forced = std::getenv("PHYSPRING_KERNEL");
-  if (forced == nullptr || *forced == '\0') {
-    return FindKernel<double>("avx2") != nullptr ? "avx2" : "scalar";
-  }
-  if (FindKernel<double>(forced) == nullptr) {
-    throw Error(
-        fmt::format("PHYSPRING_KERNEL={}: cannot run here; the kernels are scalar and, on "
-                    "processors that have it, avx2",
-                    Quote(forced)));
-  }
-  return forced;
-}
-
 }  // namespace
 
 template <class Real>
@@ -49,13 +35,28 @@ const Kernel<Real>* FindKernel(std::string_view name) {
 }
 
 template <class Real>
+const Kernel<Real>& ChooseKernel(std::string_view wish) {
+  const Kernel<Real>* best = FindKernel<Real>("avx2");
+  const Kernel<Real>* kernel = !wish.empty() ? FindKernel<Real>(wish) : best;
+  if (kernel != nullptr) return *kernel;
+  if (wish.empty()) return kScalar<Real>;
+  throw Error(fmt::format("PHYSPRING_KERNEL={}: is no kernel for this processor; scalar{}",
+                          Quote(wish), best != nullptr ? " and avx2 are" : " is"));
+}
+
+template <class Real>
 const Kernel<Real>& BestKernel() {
-  static const Kernel<Real>& best = *FindKernel<Real>(ChooseKernel());
+  static const Kernel<Real>& best = []() -> const Kernel<Real>& {
+    const char* wish = std::getenv("PHYSPRING_KERNEL");
+    return ChooseKernel<Real>(wish != nullptr ? wish : "");
+  }();
   return best;
 }
 
 template const Kernel<float>* FindKernel(std::string_view);
 template const Kernel<double>* FindKernel(std::string_view);
+template const Kernel<float>& ChooseKernel(std::string_view);
+template const Kernel<double>& ChooseKernel(std::string_view);
 template const Kernel<float>& BestKernel();
 template const Kernel<double>& BestKernel();
 

@@ -13,8 +13,12 @@ namespace physpring {
 template <class Real>
 const Kernel<Real>* FindKernel(std::string_view name);
 
-// The fastest kernel that this processor can run, or the one that the environment variable
-// PHYSPRING_KERNEL names. Throws Error if it names one that cannot run here.
+// The kernel named `wish`, or the fastest that this processor can run if `wish` is empty. Throws
+// Error if `wish` names one that cannot run here.
+template <class Real>
+const Kernel<Real>& ChooseKernel(std::string_view wish);
+
+// The choice for the environment variable PHYSPRING_KERNEL, which is read once.
 template <class Real>
 const Kernel<Real>& BestKernel();
 

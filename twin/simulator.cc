@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/kernel_choice.h"
-
 namespace physpring {
 
 SystemGradient::SystemGradient(const SpringMassSystem& system)
@@ -30,8 +28,8 @@ SystemGradient& SystemGradient::operator+=(const SystemGradient& other) {
 
 template <class Real>
 Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& environment,
-                           const SimulationOptions& options)
-    : kernel_(&BestKernel<Real>()),
+                           const SimulationOptions& options, const Kernel<Real>& kernel)
+    : kernel_(&kernel),
       nodes_(system.node_count()),
       controllers_(system.controllers),
       options_(options),
@@ -147,21 +145,33 @@ template <class Real>
 void Simulator<Real>::AdvanceFrameAdjoint(const State& start, const FrameInput& input,
                                           State* state_bar, SystemGradient* gradient,
                                           Workspace* workspace) const {
-  const auto pairs = contact_.FindPairs(start, options_.frame_time);
-  workspace->states.resize(options_.substeps + 1, State(start.size()));
-  workspace->states[0] = start;
+  State state = start;
+  RecordFrame(input, &state, workspace);
+  RecordedFrameAdjoint(state_bar, gradient, workspace);
+}
+
+template <class Real>
+void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
+                                  Workspace* workspace) const {
+  const auto pairs = contact_.FindPairs(*state, options_.frame_time);
+  workspace->states.resize(options_.substeps + 1, State(state->size()));
   workspace->impacts.resize(options_.substeps);
+  workspace->states[0] = *state;
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, pairs, i, &workspace->states[i], &workspace->states[i + 1],
             &workspace->impacts[i], &workspace->force);
   }
+  *state = workspace->states[options_.substeps];
+  PlaceControllers(input, options_.substeps - 1, state);
+}
 
+template <class Real>
+void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gradient,
+                                           Workspace* workspace) const {
   workspace->ClearGradients(nodes_);
   // controllers and the spare node feel no force: their entries stay 0
   std::fill(workspace->force.begin(), workspace->force.end(), NodeForce<Real>{});
-  for (int i = options_.substeps - 1; i >= 0; --i) {
-    SubstepAdjoint(i, state_bar, workspace);
-  }
+  for (int i = options_.substeps - 1; i >= 0; --i) SubstepAdjoint(i, state_bar, workspace);
   // the controllers' motion is given: what was added to them does not count
   std::fill(state_bar->begin() + nodes_, state_bar->end(), NodeState<Real>{});
   AddGradients(*workspace, gradient);

@@ -15,7 +15,7 @@
 
 #include "twin/contact.h"
 #include "twin/environment.h"
-#include "twin/kernel.h"
+#include "twin/kernel_choice.h"
 #include "twin/node_state.h"
 #include "twin/spring_blocks.h"
 #include "twin/spring_mass_system.h"
@@ -53,7 +53,7 @@ class Simulator {
   using State = NodeStates<Real>;
 
   Simulator(const SpringMassSystem& system, const Environment& environment,
-            const SimulationOptions& options);
+            const SimulationOptions& options, const Kernel<Real>& kernel = BestKernel<Real>());
 
   // The parameters, masses and drag of a system of the same topology.
   void SetParameters(const SpringMassSystem& system);
@@ -70,9 +70,14 @@ class Simulator {
   void AdvanceFrame(const FrameInput& input, State* state, Workspace* workspace) const;
 
   // Adjoint of AdvanceFrame. `start`: the state before the frame. `state_bar`: in d loss / d state
-  // after the frame, out before it. Adds to `gradient`.
+  // after the frame, out before it. Adds to `gradient`. Goes through the frame again, forwards.
   void AdvanceFrameAdjoint(const State& start, const FrameInput& input, State* state_bar,
                            SystemGradient* gradient, Workspace* workspace) const;
+
+  // The same in two parts, for a frame whose adjoint follows at once: AdvanceFrame, keeping what
+  // the adjoint needs in the workspace, and the adjoint of the frame that was recorded last.
+  void RecordFrame(const FrameInput& input, State* state, Workspace* workspace) const;
+  void RecordedFrameAdjoint(State* state_bar, SystemGradient* gradient, Workspace* workspace) const;
 
   const SimulationOptions& options() const { return options_; }
   int node_count() const { return nodes_; }

@@ -175,5 +175,22 @@ TEST(Kernel, NodeUpdateAdjointIsThatOfTheReference) {
   });
 }
 
+TEST(KernelChoice, TakesTheOneWishedForOrTheFastest) {
+  EXPECT_EQ(&ChooseKernel<float>("scalar"), FindKernel<float>("scalar"));
+  const char* fastest = FindKernel<double>("avx2") != nullptr ? "avx2" : "scalar";
+  EXPECT_STREQ(ChooseKernel<float>("").name, fastest);
+  EXPECT_STREQ(ChooseKernel<double>("").name, fastest);
+}
+
+TEST(KernelChoice, RefusesOneThatCannotRun) {
+  EXPECT_EQ(FindKernel<float>("sse9"), nullptr);
+  try {
+    ChooseKernel<float>("sse9");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find("PHYSPRING_KERNEL='sse9': is no kernel"), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace physpring

@@ -111,6 +111,37 @@ TYPED_TEST(SimulatorDeterminism, ASecondSimulatorGivesTheSame) {
   ExpectSame(Run(first, rollout, &first_workspace), Run(second, rollout, &second_workspace));
 }
 
+TYPED_TEST(SimulatorDeterminism, EveryKernelGivesTheSame) {
+  using Sim = Simulator<TypeParam>;
+  const Rollout rollout = BusyRollout();
+  const auto run = [&](const Kernel<TypeParam>& kernel) {
+    const Sim simulator(rollout.system, rollout.environment, rollout.options, kernel);
+    typename Sim::Workspace workspace(simulator);
+    return Run(simulator, rollout, &workspace);
+  };
+  ExpectSame(run(ChooseKernel<TypeParam>("scalar")), run(ChooseKernel<TypeParam>("")));
+}
+
+TYPED_TEST(SimulatorDeterminism, ARecordedFrameIsTheSame) {
+  using Sim = Simulator<TypeParam>;
+  const Rollout rollout = BusyRollout();
+  const Sim simulator(rollout.system, rollout.environment, rollout.options);
+  typename Sim::Workspace workspace(simulator);
+  const NodeStates<TypeParam> start = simulator.MakeState(rollout.position, rollout.velocity);
+  NodeStates<TypeParam> advanced = start, recorded = start;
+  simulator.AdvanceFrame(rollout.frames[0], &advanced, &workspace);
+  simulator.RecordFrame(rollout.frames[0], &recorded, &workspace);
+  EXPECT_TRUE(SameBits(recorded, advanced));
+
+  NodeStates<TypeParam> bar = simulator.MakeState(rollout.target[0], rollout.target[1]);
+  NodeStates<TypeParam> recorded_bar = bar;
+  SystemGradient gradient(rollout.system), recorded_gradient(rollout.system);
+  simulator.RecordedFrameAdjoint(&recorded_bar, &recorded_gradient, &workspace);
+  simulator.AdvanceFrameAdjoint(start, rollout.frames[0], &bar, &gradient, &workspace);
+  EXPECT_TRUE(SameBits(recorded_bar, bar));
+  ExpectSame(recorded_gradient, gradient);
+}
+
 TYPED_TEST(SimulatorDeterminism, ThreadsDoNotDisturbEachOther) {
   using Sim = Simulator<TypeParam>;
   const Rollout rollout = BusyRollout();

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Time of a sub-step, forward and with its gradient, by precision, kernel and size:
+//   substep_benchmark --benchmark_filter=gradient/double --benchmark_repetitions=9
+// Counter `substep`: CPU time of one. A rollout that does not fit into memory pays `forward` once
+// more for its gradient.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "bench/rope.h"
+#include "twin/simulator.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kSubsteps = 100;  // a frame
+
+template <class Real>
+class Rope {
+ public:
+  Rope(int nodes, int springs, const Kernel<Real>& kernel)
+      : system_(MakeRope(nodes, springs)),
+        simulator_(system_, {.ground = Eigen::Vector4d(0, 0, 1, 0)},
+                   {.frame_time = kSubsteps / 20010.0, .substeps = kSubsteps}, kernel),
+        workspace_(simulator_),
+        gradient_(system_),
+        start_(simulator_.MakeState(system_.position, Points::Zero(3, nodes))) {
+    input_.controllers_start = input_.controllers_end = Points(3, 0);
+  }
+
+  void Forward() {
+    state_ = start_;
+    simulator_.AdvanceFrame(input_, &state_, &workspace_);
+    benchmark::DoNotOptimize(state_);
+  }
+  void Gradient() {
+    state_ = start_;
+    simulator_.RecordFrame(input_, &state_, &workspace_);
+    simulator_.RecordedFrameAdjoint(&state_, &gradient_, &workspace_);
+    benchmark::DoNotOptimize(gradient_);
+  }
+
+ private:
+  SpringMassSystem system_;
+  Simulator<Real> simulator_;
+  typename Simulator<Real>::Workspace workspace_;
+  SystemGradient gradient_;
+  FrameInput input_;
+  NodeStates<Real> start_, state_;
+};
+
+template <class Real>
+void Measure(benchmark::State& state, void (Rope<Real>::*function)(), int nodes, int springs,
+             const Kernel<Real>& kernel) {
+  Rope<Real> rope(nodes, springs, kernel);
+  for (auto _ : state) (rope.*function)();
+  state.counters["substep"] = benchmark::Counter(
+      kSubsteps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+template <class Real>
+void Register(const char* precision) {
+  constexpr int kSizes[][2] = {{45, 250}, {838, 7344}, {1050, 10099}, {1243, 13129}, {2000, 30000}};
+  for (const auto& [nodes, springs] : kSizes) {
+    for (const char* name : {"scalar", "avx2"}) {
+      const Kernel<Real>* kernel = FindKernel<Real>(name);
+      if (kernel == nullptr) continue;
+      const auto add = [&](const char* what, void (Rope<Real>::*function)()) {
+        benchmark::RegisterBenchmark(
+            fmt::format("{}/{}/{}/{}/{}", what, precision, name, nodes, springs).c_str(),
+            Measure<Real>, function, nodes, springs, *kernel);
+      };
+      add("forward", &Rope<Real>::Forward);
+      add("gradient", &Rope<Real>::Gradient);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace physpring
+
+int main(int argc, char** argv) {
+  physpring::Register<float>("float");
+  physpring::Register<double>("double");
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}
