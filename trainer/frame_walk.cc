@@ -25,8 +25,7 @@ class FrameWalkIn : public FrameWalk {
   std::optional<double> Step(const SpringMassSystem& system, SystemGradient* gradient) override {
     simulator_.SetParameters(system);
     const FrameInput input{recording_.controllers[frame_], recording_.controllers[frame_ + 1], {}};
-    const NodeStates<Real> start = state_;
-    simulator_.AdvanceFrame(input, &state_, &workspace_);
+    simulator_.RecordFrame(input, &state_, &workspace_);
     ++frame_;
     const Points position = simulator_.Positions(state_);
     if (!position.allFinite() || position.cwiseAbs().maxCoeff() > kFarAway) return {};
@@ -37,7 +36,7 @@ class FrameWalkIn : public FrameWalk {
     for (int i = 0; i < position.cols(); ++i) {
       for (int j = 0; j < 3; ++j) state_bar[i].x[j] = static_cast<Real>(position_bar(j, i));
     }
-    simulator_.AdvanceFrameAdjoint(start, input, &state_bar, gradient, &workspace_);
+    simulator_.RecordedFrameAdjoint(&state_bar, gradient, &workspace_);
     return loss;
   }
 

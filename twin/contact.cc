@@ -212,7 +212,7 @@ typename Contact<Real>::Vector Contact<Real>::GeomTouchAdjoint(const PlacedGeom&
 
 template <class Real>
 bool Contact<Real>::Hits(int node, Real gap, Real approach, Real h) const {
-  return approach < -Real(kApproach) && gap - radius_[node] + h * approach < 0;
+  return gap - radius_[node] + h * approach < 0 && approach < -Real(kApproach);
 }
 
 template <class Real>
