@@ -95,7 +95,8 @@ Eigen::VectorXd TrackProblem::JacobianTransposedTimes(const Eigen::VectorXd& u) 
   ParallelFor(static_cast<int>(episodes_.size()), options_.threads, [&](int i) {
     const Episode& episode = episodes_[i];
     const Eigen::Index nodes = rollouts_[i]->positions()[0].cols();
-    std::vector<Points> bars(episode.frames, Points::Zero(3, nodes));
+    std::vector<Points> bars(episode.frames);
+    for (Points& bar : bars) bar.setZero(3, nodes);
     std::size_t row = offset_[i];
     ForEachSeen(episode, [&](int frame, int point) {
       bars[frame].col(point) = u.segment<3>(row);
