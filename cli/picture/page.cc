@@ -158,7 +158,8 @@ std::string FormatControls(const Evaluation& evaluation, std::size_t drawn) {
       "<label><input id=\"show-measured\" type=\"checkbox\" checked>"
       "<i class=\"key dots\"></i>measured</label>"
       "<label><input id=\"show-errors\" type=\"checkbox\" checked>"
-      "<i class=\"key errors\"></i>difference</label></div>\n",
+      "<i class=\"key errors\"></i>difference</label>"
+      "<span class=\"legend\"><i class=\"key held\"></i>controllers</span></div>\n",
       recordings, levels);
 }
 
