@@ -51,15 +51,20 @@ Lift::Lift(const Twin& twin, int level, const Points& particles_start)
   }
 }
 
+Lift::Neighbourhood Lift::NeighbourhoodOf(int node, const Points& nodes) const {
+  Neighbourhood about{nodes_start_(Eigen::all, neighbours_[node]),
+                      nodes(Eigen::all, neighbours_[node])};
+  about.from.colwise() -= nodes_start_.col(node);
+  about.to.colwise() -= nodes.col(node);
+  return about;
+}
+
 std::vector<Eigen::Matrix3d> Lift::Rotations(const Points& nodes) const {
   std::vector<Eigen::Matrix3d> rotations(neighbours_.size(), Eigen::Matrix3d::Identity());
   for (int i = 0; i < static_cast<int>(neighbours_.size()); ++i) {
     if (neighbours_[i].empty()) continue;
-    Points from = nodes_start_(Eigen::all, neighbours_[i]);
-    Points to = nodes(Eigen::all, neighbours_[i]);
-    from.colwise() -= nodes_start_.col(i);
-    to.colwise() -= nodes.col(i);
-    rotations[i] = FitRotation(from, to);
+    const Neighbourhood about = NeighbourhoodOf(i, nodes);
+    rotations[i] = FitRotation(about.from, about.to);
   }
   return rotations;
 }
@@ -78,6 +83,34 @@ Points Lift::Apply(const Points& nodes) const {
     }
   }
   return particles;
+}
+
+Points Lift::Adjoint(const Points& nodes, const Points& particles_bar) const {
+  if (identity_) return particles_bar;
+  Points nodes_bar = Points::Zero(3, nodes.cols());
+  std::vector<Eigen::Matrix3d> rotations_bar(neighbours_.size(), Eigen::Matrix3d::Zero());
+  for (int i = 0; i < particles_bar.cols(); ++i) {
+    for (const Anchor& anchor : anchors_[i]) {
+      if (anchor.weight == 0) continue;
+      // forward: x_i += w [X + R (x_i(0) - X(0))]
+      const Eigen::Vector3d bar = anchor.weight * particles_bar.col(i);
+      const int node = anchor.node;
+      nodes_bar.col(node) += bar;
+      rotations_bar[node] += bar * (particles_start_.col(i) - nodes_start_.col(node)).transpose();
+    }
+  }
+  for (int i = 0; i < static_cast<int>(neighbours_.size()); ++i) {
+    if (neighbours_[i].empty() || rotations_bar[i].isZero(0)) continue;
+    // forward: R = FitRotation(from, to), to = X_j - X_i
+    const Neighbourhood about = NeighbourhoodOf(i, nodes);
+    Points to_bar = Points::Zero(3, about.to.cols());
+    AddFitRotationAdjoint(about.from, about.to, rotations_bar[i], &to_bar);
+    for (std::size_t j = 0; j < neighbours_[i].size(); ++j) {
+      nodes_bar.col(neighbours_[i][j]) += to_bar.col(static_cast<Eigen::Index>(j));
+    }
+    nodes_bar.col(i) -= to_bar.rowwise().sum();
+  }
+  return nodes_bar;
 }
 
 }  // namespace physpring

@@ -25,6 +25,9 @@ class Lift {
   // `nodes` (3 x nodes, m). At level 0 bit for bit `nodes`.
   Points Apply(const Points& nodes) const;
 
+  // d loss / d nodes (3 x nodes) from d loss / d Apply(nodes), the rotations' part included.
+  Points Adjoint(const Points& nodes, const Points& particles_bar) const;
+
  private:
   struct Anchor {
     int node = 0;
@@ -32,6 +35,11 @@ class Lift {
   };
   using Anchors = std::array<Anchor, 4>;  // unused ones have weight 0
 
+  // Where a node's spring neighbours are about it: at the start, and when the nodes are at `nodes`.
+  struct Neighbourhood {
+    Points from, to;
+  };
+  Neighbourhood NeighbourhoodOf(int node, const Points& nodes) const;
   std::vector<Eigen::Matrix3d> Rotations(const Points& nodes) const;
 
   bool identity_;

@@ -13,6 +13,11 @@ namespace physpring {
 // What the columns leave open (the twist about a straight line) is turned as little as possible.
 Eigen::Matrix3d FitRotation(const Points& from, const Points& to);
 
+// Adds to `to_bar` the derivative of a loss with respect to `to`, rotation_bar being the one with
+// respect to FitRotation(from, to).
+void AddFitRotationAdjoint(const Points& from, const Points& to,
+                           const Eigen::Matrix3d& rotation_bar, Points* to_bar);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_ROTATION_H_

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "tests/support/gradient_check.h"
+#include "tests/support/random_system.h"
 #include "tests/support/small_twin.h"
 #include "twin/hierarchy.h"
 
@@ -53,6 +55,34 @@ TEST(Lift, BlendsTheFourNearestNodesByDistance) {
   // its own members move most of the way up
   EXPECT_GT(lifted(2, 19) - start(2, 19), 0.005);
   EXPECT_LT(lifted(2, 19) - start(2, 19), 0.01);
+}
+
+// A bent block, and one whose nodes lie about on a straight line (a rope: the twist is open).
+TEST(Lift, AdjointIsTheDerivative) {
+  for (const bool straight : {false, true}) {
+    Twin twin = SmallTwin(2);
+    if (straight) {
+      SpringMassSystem& level0 = twin.levels[0].system;
+      level0.position.bottomRows(2) *= 1e-3;
+      const Points particles = level0.position.leftCols(level0.node_count());
+      SpringMassSystem& level1 = twin.levels[1].system;
+      level1.position.leftCols(level1.node_count()) = AverageOverMembers(twin, 1, particles);
+    }
+    const Points start = StartOf(twin);
+    const Lift lift(twin, 1, start);
+    Random random(3);
+    Points nodes = AverageOverMembers(twin, 1, start);
+    nodes += random.Box(static_cast<int>(nodes.cols()), 0.005);
+    const Points bar = random.Box(static_cast<int>(start.cols()), 1);
+    const Points nodes_bar = lift.Adjoint(nodes, bar);
+    std::vector<CheckedVariable> variables;
+    for (Eigen::Index k = 0; k < nodes.size(); ++k) {
+      variables.push_back({std::to_string(k), &nodes.data()[k], 1e-5, nodes_bar.data()[k]});
+    }
+    const auto loss = [&] { return lift.Apply(nodes).cwiseProduct(bar).cast<long double>().sum(); };
+    const GradientReport report = CheckGradient(loss, variables);
+    EXPECT_TRUE(report.passed) << report.log;
+  }
 }
 
 }  // namespace
