@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporter/export.h"
+
+#include <fmt/format.h>
+
+#include "exporter/level_model.h"
+#include "exporter/readme.h"
+#include "exporter/scene.h"
+
+namespace physpring {
+namespace {
+
+std::vector<int> ChosenLevels(const Twin& twin, const ExportOptions& options) {
+  if (options.level >= 0) return {options.level};
+  std::vector<int> levels;
+  for (std::size_t i = 0; i < twin.levels.size(); ++i) levels.push_back(static_cast<int>(i));
+  return levels;
+}
+
+}  // namespace
+
+Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::string& command) {
+  Export result;
+  for (const int number : ChosenLevels(twin, options)) {
+    ExportedLevel level;
+    level.plan = PlanLevel(twin, number, options);
+    if (level.plan.springs == SpringKind::kFlex) {
+      level.flexes = GroupSprings(level.plan.system(), level.plan.flexes);
+    }
+    level.model = fmt::format("level{}.xml", number);
+    level.scene = result.levels.empty() ? "scene.xml" : fmt::format("scene_level{}.xml", number);
+    result.files[level.model] = FormatLevel(level.plan, level.flexes);
+    result.files[level.scene] = FormatScene(level.plan, level.model);
+    result.levels.push_back(std::move(level));
+  }
+  result.files["README.md"] = FormatReadme(result.levels, command);
+  return result;
+}
+
+}  // namespace physpring

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporter/level_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "twin/error.h"
+#include "twin/hierarchy.h"
+#include "twin/predict.h"
+#include "twin/quote.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kPluginTimestep = 2e-3;  // s
+
+bool IsPlain(char letter) {
+  return std::isalnum(static_cast<unsigned char>(letter)) || letter == '_' || letter == '.' ||
+         letter == '-';
+}
+
+std::string ChooseName(const Twin& twin, const ExportOptions& options) {
+  if (!options.name.empty()) {
+    if (!std::all_of(options.name.begin(), options.name.end(), IsPlain)) {
+      throw Error(fmt::format("name {}: only letters, digits and \"_.-\" may be in a name",
+                              Quote(options.name)));
+    }
+    return options.name;
+  }
+  std::string name = twin.name.empty() ? "twin" : twin.name;
+  std::replace_if(
+      name.begin(), name.end(), [](char letter) { return !IsPlain(letter); }, '_');
+  return name;
+}
+
+ControllerKind ChooseControllers(const Twin& twin, const ExportOptions& options) {
+  if (options.controllers != ControllerKind::kAuto) return options.controllers;
+  // the plugin takes differences of a mocap body's places
+  const bool needs_velocity = twin.controller_velocity && options.springs != SpringKind::kPlugin;
+  return needs_velocity ? ControllerKind::kSlide : ControllerKind::kMocap;
+}
+
+ContactKind ChooseContact(const ExportOptions& options) {
+  if (options.contact != ContactKind::kAuto) return options.contact;
+  return options.springs == SpringKind::kPlugin ? ContactKind::kPlugin : ContactKind::kMujoco;
+}
+
+void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
+  const TwinLevel& level = plan->twin->levels[plan->level];
+  plan->critical_timestep = ComputeStabilityBound(level.system).timestep;
+  plan->substep = 1 / (plan->twin->fps * ChooseSubsteps(level, plan->twin->fps, 0));
+  if (plan->springs == SpringKind::kPlugin) {
+    plan->timestep = options.timestep > 0 ? options.timestep : kPluginTimestep;
+    plan->substep = std::min(plan->substep, plan->timestep);
+    return;
+  }
+  if (options.timestep > 0) plan->substep = options.timestep;
+  plan->timestep = plan->substep;
+  if (plan->timestep >= plan->critical_timestep) {
+    throw Error(fmt::format(
+        "twin {} level {}: a time step of {} s is unstable, the largest stable one is {:.4g} s",
+        Quote(plan->twin->name), plan->level, plan->timestep, plan->critical_timestep));
+  }
+}
+
+}  // namespace
+
+std::string LevelPlan::Body(int column) const {
+  const int nodes = system().node_count();
+  if (column < nodes) return fmt::format("{}_{}", name, column);
+  return fmt::format("{}_controller_{}", name, column - nodes);
+}
+
+std::string LevelPlan::Vertex(int node) const { return fmt::format("{}_vertex_{}", name, node); }
+
+LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
+  LevelOf(twin, level);
+  LevelPlan plan;
+  plan.twin = &twin;
+  plan.level = level;
+  plan.name = ChooseName(twin, options);
+  plan.springs = options.springs;
+  plan.controllers = ChooseControllers(twin, options);
+  plan.contact = ChooseContact(options);
+  plan.flexes = options.flexes;
+  ChooseTimesteps(options, &plan);
+  return plan;
+}
+
+}  // namespace physpring

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is decided about a level before any XML is written: names, kinds and time steps.
+#ifndef PHYSPRING_EXPORTER_LEVEL_PLAN_H_
+#define PHYSPRING_EXPORTER_LEVEL_PLAN_H_
+
+#include <string>
+
+#include "exporter/options.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+// Refers to the twin that it was made of.
+struct LevelPlan {
+  const Twin* twin = nullptr;
+  int level = 0;
+  std::string name;  // prefix of all names
+  SpringKind springs = SpringKind::kTendon;
+  ControllerKind controllers = ControllerKind::kMocap;  // never kAuto
+  ContactKind contact = ContactKind::kMujoco;           // never kAuto
+  int flexes = 0;                                       // at most
+  double substep = 0;                                   // s: of the springs and the drag
+  double timestep = 0;           // s: of scene.xml; equal to the sub-step without the plugin
+  double critical_timestep = 0;  // s: the largest stable sub-step
+
+  const SpringMassSystem& system() const { return twin->levels[level].system; }
+  bool NeedsPlugin() const {
+    return springs == SpringKind::kPlugin || contact == ContactKind::kPlugin;
+  }
+  // Name of the body and of the site of node or controller `column`.
+  std::string Body(int column) const;
+  // Of the body that is a flex's vertex, on a node: MuJoCo lets no body with joint damping be one.
+  std::string Vertex(int node) const;
+  std::string NodeClass() const { return name + "_node"; }
+  std::string ControllerClass() const { return name + "_controller"; }
+};
+
+// The sub-step is the one that the trainer and `physpring eval` use: half the stability bound's,
+// never longer than in training, and a frame is a whole number of them; or, without the plugin,
+// options.timestep. Throws Error if the level does not exist, if that time step is not stable, or
+// if the name has characters other than letters, digits and "_.-".
+LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_EXPORTER_LEVEL_PLAN_H_

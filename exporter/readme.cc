@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporter/readme.h"
+
+#include <fmt/format.h>
+
+namespace physpring {
+namespace {
+
+std::string FormatTable(const std::vector<ExportedLevel>& levels) {
+  std::string table =
+      "| model | scene | nodes | springs | time step | largest stable step |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const ExportedLevel& level : levels) {
+    table +=
+        fmt::format("| `{}` | `{}` | {} | {} | {:.4g} ms | {:.4g} ms |\n", level.model, level.scene,
+                    level.plan.system().node_count(), level.plan.system().spring_count(),
+                    1e3 * level.plan.timestep, 1e3 * level.plan.critical_timestep);
+  }
+  return table;
+}
+
+std::string DescribeSprings(const LevelPlan& plan) {
+  switch (plan.springs) {
+    case SpringKind::kPlugin:
+      return fmt::format(
+          "Springs, drag and contact are the plugin `physpring.springs`, with sub-steps of at most "
+          "{:.4g} ms (level {}) inside each step of MuJoCo: the plugin library must be loaded "
+          "first.",
+          1e3 * plan.substep, plan.level);
+    case SpringKind::kFlex:
+      return "Springs are the edges of 1-D flexes, grouped by stiffness: an approximation of the "
+             "twin.";
+    case SpringKind::kTendon:
+      break;
+  }
+  return "Each spring is a spatial tendon.";
+}
+
+std::string DescribeContact(const LevelPlan& plan) {
+  const ContactCoefficients& contact = plan.system().contact;
+  const std::string law =
+      fmt::format("restitution {:.3g}, friction {:.3g}", contact.restitution, contact.friction);
+  switch (plan.contact) {
+    case ContactKind::kNone:
+      return "Nodes touch nothing.";
+    case ContactKind::kPlugin:
+      return "Contact is the learned impulse law (" + law + "), by the physpring plugin.";
+    default:
+      return "Contact is MuJoCo's soft one, with the learned friction and a damping that bounces "
+             "about as learned (" +
+             law + "). The learned impulse law itself needs the plugin.";
+  }
+}
+
+std::string DescribeControllers(const LevelPlan& plan) {
+  if (plan.system().controllers == 0) return "";
+  if (plan.controllers == ControllerKind::kMocap) {
+    return fmt::format(
+        "The object is held by mocap bodies, `{}` ...: set `data.mocap_pos` before each step.\n\n",
+        plan.Body(plan.system().node_count()));
+  }
+  return fmt::format(
+      "The object is held by bodies on slide joints, `{0}` ..., because the twin's dashpots feel "
+      "the velocity of what holds it, and mocap bodies have none. Actuators `{0}_x`, `_y`, `_z` "
+      "... take them to `data.ctrl`, the displacement in metres, within one time step of "
+      "{1:.4g} ms.\n\n",
+      plan.Body(plan.system().node_count()), 1e3 * plan.timestep);
+}
+
+}  // namespace
+
+std::string FormatReadme(const std::vector<ExportedLevel>& levels, const std::string& command) {
+  const LevelPlan& plan = levels[0].plan;
+  return fmt::format(R"(# {0}
+
+A deformable object as spring-mass systems, learned from {1} and exported by PhySPRING {2}:
+
+```
+{3}
+```
+
+Requires MuJoCo 4.0.0 or later.
+
+{4}
+```python
+import mujoco
+model = mujoco.MjModel.from_xml_path("scene.xml")
+```
+
+{5} {6}
+
+{7}In a scene of your own, with a time step below the largest stable one and the Euler integrator:
+
+```xml
+<asset>
+  <model name="{0}" file="{8}"/>
+</asset>
+<worldbody>
+  <attach model="{0}" prefix="a_"/>
+</worldbody>
+```
+
+Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the reference configuration.
+)",
+                     plan.name, plan.twin->trained_on.empty() ? "a recording" : "recordings",
+                     PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
+                     DescribeContact(plan), DescribeControllers(plan), levels[0].model);
+}
+
+}  // namespace physpring

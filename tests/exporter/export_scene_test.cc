@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `physpring export` writes, as a MuJoCo user meets it: it compiles and runs without a
+// warning, in its own scene and in others.
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "rollout/mujoco_log.h"
+#include "tests/support/exported_folder.h"
+#include "tests/support/small_twin.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+int Id(const ModelPtr& model, mjtObj type, const std::string& name) {
+  return mj_name2id(model.get(), type, name.c_str());
+}
+
+ExportOptions Options(SpringKind springs, ControllerKind controllers, ContactKind contact) {
+  ExportOptions options;
+  options.springs = springs;
+  options.controllers = controllers;
+  options.contact = contact;
+  return options;
+}
+
+class StockMujoco
+    : public testing::TestWithParam<std::tuple<SpringKind, ControllerKind, ContactKind>> {
+ protected:
+  ExportOptions options() const { return std::apply(Options, GetParam()); }
+};
+
+TEST_P(StockMujoco, RunsEachSceneWithoutAWarning) {
+  const Twin twin = SmallTwin(3);
+  const ExportedFolder folder(twin, options());
+  for (const ExportedLevel& level : folder.result.levels) {
+    const ModelPtr model = folder.Load(level.scene);
+    const DataPtr data = MakeData(*model);
+    mj_resetDataKeyframe(model.get(), data.get(), Id(model, mjOBJ_KEY, "test"));
+    EXPECT_EQ(data->qvel[0], 0.5);
+    for (int step = 0; step < 1000; ++step) Step(*model, data.get());
+    EXPECT_LT(mju_norm(data->qpos, model->nq), 1) << level.model;
+  }
+}
+
+TEST_P(StockMujoco, SavesAndReloads) {
+  const Twin twin = SmallTwin(1);
+  const ExportedFolder folder(twin, options());
+  const ModelPtr model = folder.Load("scene.xml");
+  char message[500] = "";
+  ASSERT_TRUE(mj_saveLastXML(folder.File("saved.xml").c_str(), model.get(), message, 500))
+      << message;
+  mj_saveModel(model.get(), folder.File("saved.mjb").c_str(), nullptr, 0);
+  const ModelPtr from_xml = folder.Load("saved.xml");
+  const ModelPtr from_mjb(mj_loadModel(folder.File("saved.mjb").c_str(), nullptr));
+  ASSERT_TRUE(from_mjb);
+  const DataPtr data = MakeData(*model), xml_data = MakeData(*from_xml),
+                mjb_data = MakeData(*from_mjb);
+  for (int step = 0; step < 100; ++step) {
+    Step(*model, data.get());
+    Step(*from_xml, xml_data.get());
+    Step(*from_mjb, mjb_data.get());
+  }
+  for (int i = 0; i < model->nq; ++i) {
+    EXPECT_NEAR(xml_data->qpos[i], data->qpos[i], 1e-6);  // MuJoCo saves 6 digits of a number
+    EXPECT_EQ(mjb_data->qpos[i], data->qpos[i]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, StockMujoco,
+    testing::Combine(testing::Values(SpringKind::kTendon, SpringKind::kFlex),
+                     testing::Values(ControllerKind::kMocap, ControllerKind::kSlide),
+                     testing::Values(ContactKind::kMujoco, ContactKind::kNone)));
+
+constexpr char kAttachedTwice[] = R"(
+  <mujoco>
+    <option timestep="0.0005"/>
+    <asset><model name="twin" file="level0.xml"/></asset>
+    <worldbody>
+      <body pos="0 0 1"><freejoint/><geom size="0.1"/></body>
+      <frame pos="1 0 0"><attach model="twin" prefix="a_"/></frame>
+      <frame pos="-1 0 0" euler="0 0 90"><attach model="twin" prefix="b_"/></frame>
+    </worldbody>
+    <keyframe><key name="home"/></keyframe>
+  </mujoco>)";
+
+TEST(ExportScene, AttachesTwice) {
+  const Twin twin = SmallTwin(1);
+  for (const ControllerKind controllers : {ControllerKind::kMocap, ControllerKind::kSlide}) {
+    const ExportedFolder folder(twin,
+                                Options(SpringKind::kTendon, controllers, ContactKind::kMujoco));
+    const ModelPtr model = folder.LoadText(kAttachedTwice);
+    EXPECT_EQ(model->ntendon, 2 * twin.levels[0].system.spring_count());
+    EXPECT_GE(Id(model, mjOBJ_BODY, "a_block_39"), 0);
+    EXPECT_GE(Id(model, mjOBJ_SITE, "b_block_controller_1"), 0);
+    EXPECT_GE(Id(model, mjOBJ_KEY, "b_block_home"), 0);
+    const DataPtr data = MakeData(*model);
+    for (int step = 0; step < 1000; ++step) Step(*model, data.get());
+    const mjtNum* a = data->xpos + 3 * Id(model, mjOBJ_BODY, "a_block_7");
+    const mjtNum* b = data->xpos + 3 * Id(model, mjOBJ_BODY, "b_block_7");
+    EXPECT_NEAR(a[2], b[2], 1e-9);
+  }
+}
+
+TEST(ExportScene, IsIncludedAmongOthers) {
+  const Twin twin = SmallTwin(1);
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.LoadText(R"(
+    <mujoco>
+      <option timestep="0.0005" gravity="0 0 -1.62" integrator="implicitfast"/>
+      <worldbody><body name="box" pos="0 0 1"><freejoint/><geom size="0.1"/></body></worldbody>
+      <include file="level0.xml"/>
+      <keyframe><key name="home"/></keyframe>
+    </mujoco>)");
+  // what the host scene says still holds
+  EXPECT_EQ(model->opt.timestep, 0.0005);
+  EXPECT_EQ(model->opt.gravity[2], -1.62);
+  EXPECT_EQ(model->opt.integrator, mjINT_IMPLICITFAST);
+  EXPECT_EQ(model->geom_group[0], 0);
+  EXPECT_GE(Id(model, mjOBJ_KEY, "block_home"), 0);
+}
+
+TEST(ExportScene, HoldsWhatTheTwinHolds) {
+  Twin twin = SmallTwin(1);
+  SpringMassSystem& system = twin.levels[0].system;
+  system.stiffness[3] = 100.0 / 3;
+  system.dashpot[3] = 1.0 / 30;
+  system.rest_length[3] = 0.1 / 7;
+  system.mass[2] = 0.01 / 3;
+  system.position(0, 2) += 0.001 / 3;
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  // to the last bit
+  EXPECT_EQ(model->tendon_stiffness[3], system.stiffness[3]);
+  EXPECT_EQ(model->tendon_damping[3], system.dashpot[3]);
+  EXPECT_EQ(model->tendon_lengthspring[2 * 3], system.rest_length[3]);
+  EXPECT_EQ(model->tendon_lengthspring[2 * 3 + 1], system.rest_length[3]);
+  const int body = Id(model, mjOBJ_BODY, "block_2");
+  EXPECT_EQ(model->body_mass[body], system.mass[2]);
+  EXPECT_EQ(model->body_pos[3 * body], system.position(0, 2));
+  const int numeric = Id(model, mjOBJ_NUMERIC, "block_critical_timestep");
+  EXPECT_EQ(model->numeric_data[model->numeric_adr[numeric]],
+            folder.result.levels[0].plan.critical_timestep);
+}
+
+TEST(ExportScene, ActuatorsTakeControllersToTheirPlaceInOneStep) {
+  const Twin twin = SmallTwin(1);
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  const DataPtr data = MakeData(*model);
+  const int actuator = Id(model, mjOBJ_ACTUATOR, "block_controller_1_y");
+  const int joint = Id(model, mjOBJ_JOINT, "block_controller_1_y");
+  for (int step = 1; step <= 100; ++step) {
+    data->ctrl[actuator] = 1e-4 * step;
+    Step(*model, data.get());
+    // springs push it aside by h^2 F / m: 1e-6 s^2 * 10 N / 1 kg
+    EXPECT_NEAR(data->qpos[model->jnt_qposadr[joint]], 1e-4 * step, 1e-5);
+  }
+  EXPECT_NEAR(data->qvel[model->jnt_dofadr[joint]], 1e-4 / model->opt.timestep, 0.01);
+}
+
+TEST(ExportScene, NodesRestOnTheFloor) {
+  Twin twin = SmallTwin(1);
+  SpringMassSystem& system = twin.levels[0].system;
+  system.contact.friction = 0.8;
+  system.position.row(2).array() += 0.1;
+  // no controllers: nothing holds it
+  system.controllers = 0;
+  system.position.conservativeResize(3, system.mass.size());
+  const int nodes = system.node_count();
+  std::vector<int> kept;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    if (system.springs[e][0] < nodes && system.springs[e][1] < nodes) kept.push_back(e);
+  }
+  SpringMassSystem free = system;
+  free.springs.clear();
+  for (const int e : kept) free.springs.push_back(system.springs[e]);
+  free.stiffness = system.stiffness(kept).eval();
+  free.dashpot = system.dashpot(kept).eval();
+  free.rest_length = system.rest_length(kept).eval();
+  system = free;
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  const DataPtr data = MakeData(*model);
+  while (data->time < 2) Step(*model, data.get());
+  EXPECT_GT(data->ncon, 4);
+  EXPECT_EQ(data->contact[0].friction[0], 0.8);  // whatever the floor's is
+  for (int node = 0; node < nodes; ++node) {
+    const int body = Id(model, mjOBJ_BODY, "block_" + std::to_string(node));
+    EXPECT_GT(data->xpos[3 * body + 2], 0.9 * 0.005);
+    EXPECT_LT(mju_norm3(data->cvel + 6 * body + 3), 0.05);
+  }
+}
+
+TEST(ExportScene, OddCharactersInATwinsName) {
+  Twin twin = SmallTwin(1);
+  twin.name = "a b<&\"'/--\xc3\xa9%";
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  EXPECT_GE(Id(model, mjOBJ_BODY, "a_b_____--____0"), 0);
+}
+
+TEST(ExportScene, FloorLiesBelowAndAcrossGravity) {
+  Twin twin = SmallTwin(1);
+  twin.gravity = Eigen::Vector3d(0, 9.81, 0);  // y points down
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  const int floor = Id(model, mjOBJ_GEOM, "floor");
+  EXPECT_EQ(model->opt.gravity[1], 9.81);
+  // the lowest points are at y = 0.06, a radius of 0.005 above the floor
+  EXPECT_NEAR(model->geom_pos[3 * floor + 1], 0.065, 1e-12);
+  const DataPtr data = MakeData(*model);
+  mj_forward(model.get(), data.get());
+  EXPECT_NEAR(data->geom_xmat[9 * floor + 5], -1, 1e-12);  // its normal's y
+}
+
+}  // namespace
+}  // namespace physpring

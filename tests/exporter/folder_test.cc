@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporter/folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/temporary_folder.h"
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+std::string MessageOf(const std::string& path, const std::map<std::string, std::string>& files,
+                      bool force) {
+  try {
+    WriteFolder(path, files, force);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Folder, HoldsTheFiles) {
+  const TemporaryFolder folder;
+  WriteFolder(folder.File("a/b/"), {{"x.xml", "one"}, {"y.md", "two"}}, false);
+  EXPECT_EQ(ReadFile(folder.File("a/b/x.xml")), "one");
+  EXPECT_EQ(ReadFile(folder.File("a/b/y.md")), "two");
+}
+
+TEST(Folder, LeavesNothingElse) {
+  const TemporaryFolder folder;
+  WriteFolder(folder.File("b"), {{"x", "one"}}, false);
+  WriteFolder(folder.File("b"), {{"x", "two"}}, true);
+  EXPECT_EQ(folder.count(), 1);
+}
+
+TEST(Folder, IsNotOverwrittenUnlessForced) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("b");
+  WriteFolder(path, {{"x", "one"}, {"y", "one"}}, false);
+  EXPECT_EQ(MessageOf(path, {{"x", "two"}}, false), path + ": exists; --force overwrites");
+  EXPECT_EQ(ReadFile(path + "/x"), "one");
+  WriteFolder(path, {{"x", "two"}}, true);
+  EXPECT_EQ(ReadFile(path + "/x"), "two");
+  EXPECT_EQ(ReadFile(path + "/y"), "one");
+}
+
+TEST(Folder, FillsAnEmptyOne) {
+  const TemporaryFolder folder;
+  WriteFolder(folder.path(), {{"x", "one"}}, false);
+  EXPECT_EQ(ReadFile(folder.File("x")), "one");
+}
+
+TEST(Folder, FailsWithoutATrace) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("b");
+  // a name with a folder that is not there cannot be written
+  EXPECT_NE(MessageOf(path, {{"x", "one"}, {"z/y", "two"}}, false), "");
+  EXPECT_EQ(folder.count(), 0);
+}
+
+TEST(Folder, IsNotAFile) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.File("b")) << "text";
+  EXPECT_EQ(MessageOf(folder.File("b"), {{"x", "one"}}, true),
+            folder.File("b") + ": is not a folder");
+  EXPECT_NE(MessageOf(folder.File("b/c"), {{"x", "one"}}, true), "");
+}
+
+}  // namespace
+}  // namespace physpring
