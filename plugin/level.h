@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// One level of a twin as a MuJoCo model holds it. A plugin instance is referred to by
+//   one body that is fixed in the world, the parent: its child bodies that have joints are the
+//     nodes, in document order, each with three orthogonal slide joints;
+//   any number of other bodies: the controllers, in document order, mocap bodies or moving ones.
+// No names are involved, so that <attach> may add a prefix.
+#ifndef PHYSPRING_PLUGIN_LEVEL_H_
+#define PHYSPRING_PLUGIN_LEVEL_H_
+
+#include <mujoco/mujoco.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plugin/attributes.h"
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+struct LevelBodies {
+  int parent = 0;
+  std::vector<int> nodes, controllers;
+};
+
+// The bodies that refer to a plugin instance. Does not check that there are any.
+LevelBodies FindBodies(const mjModel* model, int instance);
+
+struct Level {
+  LevelBodies bodies;
+  std::vector<int> dofs;            // (nodes) the first of a node's three
+  std::vector<int> joints;          // (nodes) the first of a node's three
+  SpringMassSystem system;          // positions at qpos0, in the parent's axes
+  bool has_surface = false;         // the contact law acts between nodes and geoms
+  bool has_contact_radius = false;  // false: nodes touch where their geoms do
+};
+
+// Reads what springs and contacts have in common: masses from the bodies, contact coefficients from
+// the attributes. Throws Error, one line that names the instance and body or attribute and value.
+Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes);
+
+// Reads springs, their parameters and drag into `level`.
+void ReadSprings(const Attributes& attributes, Level* level);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_PLUGIN_LEVEL_H_

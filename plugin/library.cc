@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plugin library: registers its plugins with MuJoCo when it is loaded. Callbacks forward to an
+// object a plugin instance and mjData; no exception leaves them.
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "plugin/contact.h"
+#include "plugin/springs.h"
+
+namespace physpring {
+namespace {
+
+template <class Plugin>
+Plugin* Get(const mjData* data, int instance) {
+  return reinterpret_cast<Plugin*>(data->plugin_data[instance]);
+}
+
+template <class Plugin>
+void Destroy(mjData* data, int instance) {
+  delete Get<Plugin>(data, instance);
+  data->plugin_data[instance] = 0;
+}
+
+template <class Plugin>
+int Init(const mjModel* model, mjData* data, int instance) {
+  try {
+    data->plugin_data[instance] = reinterpret_cast<uintptr_t>(new Plugin(model, instance));
+    return 0;
+  } catch (const std::exception& error) {
+    mju_warning("%s", error.what());
+    return -1;
+  }
+}
+
+// The data of `to` may be of a model compiled anew.
+template <class Plugin>
+void Copy(mjData* to, const mjModel*, const mjData* from, int instance) {
+  if (to == from) return;
+  Destroy<Plugin>(to, instance);
+  to->plugin_data[instance] = reinterpret_cast<uintptr_t>(new Plugin(*Get<Plugin>(from, instance)));
+}
+
+void Reset(const mjModel* model, mjtNum* state, void*, int instance) {
+  std::fill(state, state + model->plugin_statenum[instance], 0);
+}
+
+template <class Plugin>
+void Compute(const mjModel* model, mjData* data, int instance, int) {
+  try {
+    Get<Plugin>(data, instance)->Compute(model, data, instance);
+  } catch (const std::exception& error) {
+    mju_warning("%s: %s", Plugin::kName, error.what());
+  }
+}
+
+template <class Plugin>
+void Register() {
+  mjpPlugin plugin;
+  mjp_defaultPlugin(&plugin);
+  plugin.name = Plugin::kName;
+  plugin.capabilityflags = mjPLUGIN_PASSIVE;
+  plugin.nattribute = static_cast<int>(Plugin::AttributeNames().size());
+  plugin.attributes = Plugin::AttributeNames().data();
+  plugin.nstate = Plugin::StateSize;
+  plugin.init = Init<Plugin>;
+  plugin.destroy = Destroy<Plugin>;
+  plugin.copy = Copy<Plugin>;
+  plugin.reset = Reset;
+  plugin.compute = Compute<Plugin>;
+  plugin.advance = [](const mjModel* model, mjData* data, int instance) {
+    Get<Plugin>(data, instance)->Advance(model, data, instance);
+  };
+  mjp_registerPlugin(&plugin);
+}
+
+mjPLUGIN_LIB_INIT(physpring) {
+  if (mj_version() != mjVERSION_HEADER) {
+    mju_warning("physpring: this plugin library is for MuJoCo %d, expected %d: not registered",
+                mjVERSION_HEADER, mj_version());
+    return;
+  }
+  Register<Springs>();
+  Register<LevelContact>();
+}
+
+}  // namespace
+}  // namespace physpring

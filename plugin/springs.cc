@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plugin/springs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/error.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+// Of the largest stable sub-step, where the attribute is not given.
+constexpr double kSafety = 0.5;
+
+using Vector = Eigen::Vector3d;
+
+Level ReadLevelWithSprings(const mjModel* model, int instance, const Attributes& attributes) {
+  Level level = ReadLevel(model, instance, attributes);
+  ReadSprings(attributes, &level);
+  return level;
+}
+
+double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes) {
+  const double stable = ComputeStabilityBound(system).timestep;
+  const double substep = attributes.Number("substep", kSafety * stable);
+  if (substep > 0 && substep <= stable) return substep;
+  throw Error(
+      fmt::format("{}: attribute 'substep' is {} s, expected more than 0 and at most {:.3g}, "
+                  "the largest that is stable",
+                  attributes.where(), substep, stable));
+}
+
+// Between the particles only: MuJoCo finds the rest.
+Environment Nothing() { return {Vector::Zero(), {}}; }
+
+}  // namespace
+
+SpringsModel::SpringsModel(const mjModel* model, int instance)
+    : level(ReadLevelWithSprings(model, instance, Attributes(model, instance))),
+      controller_velocity(Attributes(model, instance).Flag("controller_velocity", true)),
+      substep(ReadSubstep(level.system, Attributes(model, instance))),
+      springs(level.system),
+      particles(level.system, Nothing()) {}
+
+const std::vector<const char*>& Springs::AttributeNames() {
+  static const std::vector<const char*> names = {"nodes",
+                                                 "controllers",
+                                                 "springs",
+                                                 "stiffness",
+                                                 "rest_length",
+                                                 "dashpot",
+                                                 "drag",
+                                                 "substep",
+                                                 "controller_velocity",
+                                                 "restitution",
+                                                 "friction",
+                                                 "object_restitution",
+                                                 "object_friction",
+                                                 "collision_distance",
+                                                 "contact_radius"};
+  return names;
+}
+
+Springs::Springs(const mjModel* model, int instance)
+    : springs_(std::make_shared<SpringsModel>(model, instance)),
+      surfaces_(model, instance, springs_->level),
+      h_over_mass_(nodes()),
+      state_(springs_->springs.spare_node + 1),
+      next_(state_.size()),
+      force_(state_.size()),
+      velocity_sum_(nodes()),
+      ways_(springs_->level.bodies.controllers.size()),
+      lag_(3 * static_cast<std::size_t>(nodes())) {}
+
+int Springs::StateSize(const mjModel* model, int instance) {
+  const LevelBodies bodies = FindBodies(model, instance);
+  return 3 * static_cast<int>(bodies.nodes.size() + bodies.controllers.size()) + 1;
+}
+
+void Springs::SetTimestep(double h) {
+  const SpringMassSystem& system = springs_->level.system;
+  view_.nodes = nodes();
+  view_.h = h;
+  view_.decay = std::exp(-h * system.drag);
+  for (int i = 0; i < nodes(); ++i) h_over_mass_[i] = h * (1 / system.mass[i]);
+  view_.h_over_mass = h_over_mass_.data();
+}
+
+void Springs::ReadNodes(const EulerStep& step, const mjData* data, const double* lag) {
+  const Level& level = springs_->level;
+  for (int i = 0; i < nodes(); ++i) {
+    const double* x = data->xpos + 3 * level.bodies.nodes[i];
+    std::copy(x, x + 3, state_[i].x);
+    Eigen::Map<Vector>(state_[i].v) =
+        step.Velocity(data, level.dofs[i], level.joints[i]) + Eigen::Map<const Vector>(lag + 3 * i);
+  }
+}
+
+void Springs::ReadControllers(const mjModel* model, const mjData* data, double time,
+                              const double* plugin_state) {
+  const double* before = plugin_state + 3 * nodes();
+  const bool known = before[3 * ways_.size()] != 0;
+  for (std::size_t c = 0; c < ways_.size(); ++c) {
+    const int body = springs_->level.bodies.controllers[c];
+    const Eigen::Map<const Vector> now(data->xpos + 3 * body);
+    Way& way = ways_[c];
+    way.impulse.setZero();
+    way.is_mocap = model->body_mocapid[model->body_rootid[body]] >= 0;
+    if (way.is_mocap) {
+      way.from = known ? Vector(Eigen::Map<const Vector>(before + 3 * c)) : Vector(now);
+      way.velocity = (now - way.from) / time;
+    } else {
+      double velocity[6];
+      mj_objectVelocity(model, data, mjOBJ_XBODY, body, velocity, 0);
+      way.from = now;
+      way.velocity = Eigen::Map<const Vector>(velocity + 3);
+    }
+  }
+}
+
+bool Springs::IsFinite() const {
+  double sum = 0;
+  for (int i = 0; i < nodes(); ++i) {
+    for (int j = 0; j < 3; ++j) sum += state_[i].x[j] * 0 + state_[i].v[j] * 0;
+  }
+  return sum == 0;
+}
+
+// As in the trainer, mocap controllers are where they will be at the end of the sub-step.
+void Springs::PlaceControllers(double elapsed, double h) {
+  for (std::size_t c = 0; c < ways_.size(); ++c) {
+    NodeState<double>& controller = state_[nodes() + c];
+    const Way& way = ways_[c];
+    const double time = way.is_mocap ? elapsed + h : elapsed;
+    Eigen::Map<Vector>(controller.x) = way.from + time * way.velocity;
+    Eigen::Map<Vector>(controller.v) =
+        springs_->controller_velocity ? way.velocity : Vector(Vector::Zero());
+  }
+}
+
+void Springs::Substep(double elapsed, double h, const Contact<double>::Pairs& pairs) {
+  const Kernel<double>& kernel = BestKernel<double>();
+  PlaceControllers(elapsed, h);
+  std::fill(force_.begin(), force_.end(), NodeForce<double>{});
+  kernel.add_spring_forces(springs_->springs.View(), state_.data(), force_.data());
+  kernel.update_velocities(view_, state_.data(), force_.data(), next_.data());
+  if (!pairs.empty()) springs_->particles.Apply(state_, pairs, {}, elapsed, h, &next_, &impacts_);
+  surfaces_.Apply(state_, h, &next_);
+  kernel.update_positions(view_, state_.data(), next_.data());
+  for (int i = 0; i < nodes(); ++i) {
+    for (int j = 0; j < 4; ++j) velocity_sum_[i].f[j] += next_[i].v[j];
+  }
+  for (std::size_t c = 0; c < ways_.size(); ++c) {
+    ways_[c].impulse += h * Eigen::Map<const Vector>(force_[nodes() + c].f);
+  }
+  std::swap(state_, next_);
+}
+
+void Springs::Compute(const mjModel* model, mjData* data, int instance) {
+  const EulerStep step(model);
+  const double time = step.time();
+  const int substeps = std::max(1, static_cast<int>(std::ceil(time / springs_->substep - 1e-9)));
+  const double h = time / substeps;
+  SetTimestep(h);
+  for (int j = 0; j < 3; ++j) view_.kick.f[j] = h * step.gravity()[j];
+
+  const double* plugin_state = data->plugin_state + model->plugin_stateadr[instance];
+  ReadNodes(step, data, plugin_state);
+  ReadControllers(model, data, time, plugin_state);
+  if (!IsFinite()) return;  // MuJoCo warns
+  surfaces_.Collect(model, data, state_);
+  const Contact<double>::Pairs pairs = springs_->particles.FindPairs(state_, time);
+  std::fill(velocity_sum_.begin(), velocity_sum_.end(), NodeForce<double>{});
+  for (int i = 0; i < substeps; ++i) Substep(i * h, h, pairs);
+  WriteForces(model, step, substeps, data);
+}
+
+void Springs::WriteForces(const mjModel* model, const EulerStep& step, int substeps, mjData* data) {
+  const Level& level = springs_->level;
+  for (int i = 0; i < nodes(); ++i) {
+    const Vector mean = Eigen::Map<const Vector>(velocity_sum_[i].f) / substeps;
+    Eigen::Map<Vector>(lag_.data() + 3 * i) = Eigen::Map<const Vector>(state_[i].v) - mean;
+    step.AddForceTo(mean, level.dofs[i], level.joints[i], level.system.mass[i], data);
+  }
+  surfaces_.AddReactions(model, data, step.time());
+  for (std::size_t c = 0; c < ways_.size(); ++c) {
+    if (ways_[c].is_mocap) continue;
+    const int body = level.bodies.controllers[c];
+    const Vector force = ways_[c].impulse / step.time();
+    mj_applyFT(model, data, force.data(), nullptr, data->xpos + 3 * body, body, data->qfrc_passive);
+  }
+  is_computed_ = true;
+}
+
+void Springs::Advance(const mjModel* model, mjData* data, int instance) {
+  double* lag = data->plugin_state + model->plugin_stateadr[instance];
+  if (is_computed_) {
+    std::copy(lag_.begin(), lag_.end(), lag);
+  } else {  // passive forces are switched off
+    std::fill(lag, lag + lag_.size(), 0);
+  }
+  is_computed_ = false;
+  double* before = lag + lag_.size();
+  for (int body : springs_->level.bodies.controllers) {
+    before = std::copy(data->xpos + 3 * body, data->xpos + 3 * body + 3, before);
+  }
+  *before = 1;
+}
+
+}  // namespace physpring

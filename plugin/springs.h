@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plugin physpring.springs: springs, dashpots, drag and contacts of one level, integrated with
+// sub-steps of its own inside MuJoCo's step, by the kernel of the trainer (twin/kernel.h).
+//
+// A step of length H has n sub-steps of h = H / n. MuJoCo knows one velocity a node and step: the
+// force is the one that gives the node the mean velocity of the sub-steps, v_mean, so that it lands
+// where they end. That velocity v_end differs from v_mean; the difference is the state:
+//   compute   v = qvel + lag,  n sub-steps,  f: qvel' = v_mean
+//   advance   lag = v_end - v_mean
+// With n = 1 the lag is 0. Velocities that other forces and constraints add to qvel are carried
+// over. Mocap controllers move linearly from where they were in the step before, and have that
+// velocity; moving ones move on with theirs and feel the springs' mean force.
+#ifndef PHYSPRING_PLUGIN_SPRINGS_H_
+#define PHYSPRING_PLUGIN_SPRINGS_H_
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <vector>
+
+#include "plugin/euler_step.h"
+#include "plugin/level.h"
+#include "plugin/surfaces.h"
+#include "twin/contact.h"
+#include "twin/kernel_choice.h"
+#include "twin/spring_blocks.h"
+
+namespace physpring {
+
+// What does not change: read from the attributes once, shared by copies of an mjData.
+struct SpringsModel {
+  Level level;
+  bool controller_velocity;
+  double substep;  // s, the longest
+  SpringBlocks<double> springs;
+  Contact<double> particles;  // contacts of the level's nodes with each other
+
+  // Throws Error, one line that names instance, attribute and value.
+  SpringsModel(const mjModel* model, int instance);
+};
+
+class Springs {
+ public:
+  static constexpr const char* kName = "physpring.springs";
+  static const std::vector<const char*>& AttributeNames();
+
+  Springs(const mjModel* model, int instance);
+  Springs(const Springs& other) = default;
+
+  // Of plugin_state: the nodes' lag, where the controllers were, and whether that is known.
+  static int StateSize(const mjModel* model, int instance);
+
+  void Compute(const mjModel* model, mjData* data, int instance);
+  void Advance(const mjModel* model, mjData* data, int instance);
+
+ private:
+  // A controller's way through the step.
+  struct Way {
+    Eigen::Vector3d from, velocity, impulse;
+    bool is_mocap;
+  };
+
+  int nodes() const { return springs_->level.system.node_count(); }
+  void SetTimestep(double h);
+  void ReadNodes(const EulerStep& step, const mjData* data, const double* lag);
+  void ReadControllers(const mjModel* model, const mjData* data, double time,
+                       const double* plugin_state);
+  bool IsFinite() const;
+  void PlaceControllers(double elapsed, double h);
+  void Substep(double elapsed, double h, const Contact<double>::Pairs& pairs);
+  void WriteForces(const mjModel* model, const EulerStep& step, int substeps, mjData* data);
+
+  std::shared_ptr<const SpringsModel> springs_;
+  Surfaces surfaces_;
+
+  // Buffers of a step. `lag_` is for the Advance of the same step.
+  NodeView<double> view_{};
+  std::vector<double> h_over_mass_;
+  NodeStates<double> state_, next_;
+  NodeForces<double> force_, velocity_sum_;
+  Contact<double>::Impacts impacts_;
+  std::vector<Way> ways_;
+  std::vector<double> lag_;
+  bool is_computed_ = false;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_PLUGIN_SPRINGS_H_

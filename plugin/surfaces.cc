@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plugin/surfaces.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <string_view>
+
+namespace physpring {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+Eigen::Map<const Vector> X(const NodeState<double>& node) {
+  return Eigen::Map<const Vector>(node.x);
+}
+
+Eigen::Matrix3d Cross(const Vector& r) {
+  Eigen::Matrix3d cross;
+  cross << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
+  return cross;
+}
+
+// The instance of another twin that `body` is a node of; -1 = none.
+int InstanceOfNode(const mjModel* model, int body) {
+  const int instance = model->body_plugin[model->body_parentid[model->body_weldid[body]]];
+  if (instance < 0 || model->body_weldid[body] == 0) return -1;
+  const std::string_view name = mjp_getPluginAtSlot(model->plugin[instance])->name;
+  return name.starts_with("physpring.") ? instance : -1;
+}
+
+}  // namespace
+
+Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
+    : instance_(instance), node_of_body_(model->nbody, -1), level_(&level) {
+  const ContactCoefficients& c = level.system.contact;
+  laws_.surface = {c.restitution, c.friction};
+  laws_.object = {c.object_restitution, c.object_friction};
+  const std::vector<int>& nodes = level.bodies.nodes;
+  for (int body = 1; body < model->nbody; ++body) {
+    const auto node = std::find(nodes.begin(), nodes.end(), model->body_weldid[body]);
+    if (node != nodes.end()) node_of_body_[body] = static_cast<int>(node - nodes.begin());
+  }
+}
+
+void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state) {
+  touches_.clear();
+  bodies_.clear();
+  if (!level_->has_surface) return;
+  for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, data->contact[i]);
+  // as in twin/contact.h: the ground before the geoms that move
+  std::stable_partition(touches_.begin(), touches_.end(),
+                        [](const Touch& touch) { return touch.body < 0; });
+}
+
+void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
+                              const mjContact& contact) {
+  if (contact.includemargin >= 0) return;                  // left to MuJoCo
+  if (contact.geom[0] < 0 || contact.geom[1] < 0) return;  // a flex
+  int node = -1, node_geom = 0, other_body = 0;
+  for (int side : {0, 1}) {
+    const int body = model->geom_bodyid[contact.geom[side]];
+    if (node_of_body_[body] < 0) {
+      other_body = body;
+    } else if (node >= 0) {
+      return;  // two nodes of ours: twin/contact.h
+    } else {
+      node = node_of_body_[body];
+      node_geom = side;
+    }
+  }
+  if (node < 0) return;
+  const int other_instance = InstanceOfNode(model, other_body);
+  if (other_instance >= 0 && other_instance < instance_) return;  // answers for both
+
+  const Vector normal = Eigen::Map<const Vector>(contact.frame) * (node_geom == 0 ? -1.0 : 1.0);
+  double gap = contact.dist;
+  const int geom = contact.geom[node_geom];
+  if (level_->has_contact_radius && model->geom_type[geom] == mjGEOM_SPHERE) {
+    gap += model->geom_size[3 * geom] - level_->system.contact_radius[node];
+  }
+  touches_.push_back({node, FindBody(model, data, other_body), other_instance >= 0, normal,
+                      X(state[node]), gap, 0});
+}
+
+int Surfaces::FindBody(const mjModel* model, mjData* data, int body) {
+  const int root = model->body_weldid[body];
+  if (root == 0 || model->body_mocapid[root] >= 0) return -1;
+  const auto known = std::find_if(bodies_.begin(), bodies_.end(),
+                                  [&](const Body& other) { return other.id == body; });
+  if (known != bodies_.end()) return static_cast<int>(known - bodies_.begin());
+
+  Body found{body, Eigen::Map<const Vector>(data->xipos + 3 * body), {}, Vector6::Zero(), {}};
+  mj_objectVelocity(model, data, mjOBJ_BODY, body, found.velocity.data(), 0);
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
+  const int nv = model->nv;
+  jacobian_.resize(6 * static_cast<std::size_t>(nv));
+  solution_.resize(jacobian_.size());
+  mj_jacBodyCom(model, data, jacobian_.data() + 3 * nv, jacobian_.data(), body);
+  mj_solveM(model, data, solution_.data(), jacobian_.data(), 6);
+  found.inverse_inertia = Eigen::Map<const Rows>(jacobian_.data(), 6, nv) *
+                          Eigen::Map<const Rows>(solution_.data(), 6, nv).transpose();
+  bodies_.push_back(found);
+  return static_cast<int>(bodies_.size()) - 1;
+}
+
+Vector Surfaces::Hit(const Touch& touch, const Vector& x, const Vector& v, double h) {
+  Body* body = touch.body < 0 ? nullptr : &bodies_[touch.body];
+  Eigen::Matrix<double, 3, 6> at_node;  // velocity of the surface from that of the body
+  Vector surface = Vector::Zero();
+  if (body != nullptr) {
+    at_node << -Cross(x - body->centre), Eigen::Matrix3d::Identity();
+    surface = at_node * body->velocity;
+  }
+  const Vector u = v - surface;
+  const double approach = touch.normal.dot(u);
+  const double gap = touch.gap + touch.normal.dot(x - touch.start) - touch.advanced;
+  if (gap + h * approach >= 0 || approach >= -kApproach) return v;
+  const Vector after = Impact(u, touch.normal, touch.is_object ? laws_.object : laws_.surface);
+  if (body == nullptr) return after;
+  const double mass = level_->system.mass[touch.node];
+  const Eigen::Matrix3d inverse_mass =
+      Eigen::Matrix3d::Identity() / mass + at_node * body->inverse_inertia * at_node.transpose();
+  const Vector impulse = inverse_mass.inverse() * (after - u);
+  const Vector6 reaction = -at_node.transpose() * impulse;
+  body->velocity += body->inverse_inertia * reaction;
+  body->impulse += reaction;
+  return v + impulse / mass;
+}
+
+void Surfaces::Apply(const NodeStates<double>& state, double h, NodeStates<double>* next) {
+  for (const Touch& touch : touches_) {
+    Eigen::Map<Vector> v((*next)[touch.node].v);
+    v = Hit(touch, X(state[touch.node]), v, h);
+  }
+  for (Touch& touch : touches_) {
+    if (touch.body < 0) continue;
+    const Body& body = bodies_[touch.body];
+    const Vector arm = X(state[touch.node]) - body.centre;
+    const Vector surface = body.velocity.tail<3>() + body.velocity.head<3>().cross(arm);
+    touch.advanced += h * touch.normal.dot(surface);
+  }
+  for (Body& body : bodies_) body.centre += h * body.velocity.tail<3>();
+}
+
+void Surfaces::AddReactions(const mjModel* model, mjData* data, double time) const {
+  for (const Body& body : bodies_) {
+    const Vector6 mean = body.impulse / time;
+    mj_applyFT(model, data, mean.data() + 3, mean.data(), data->xipos + 3 * body.id, body.id,
+               data->qfrc_passive);
+  }
+}
+
+}  // namespace physpring

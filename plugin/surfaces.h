@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts of a level's nodes with everything else in the model: ground, geoms of robots, nodes of
+// other twins. MuJoCo finds them: geoms whose margins add up to less than 0 are listed in
+// mjData.contact, as far as their gaps reach, but get no constraint forces before they overlap by
+// more than that. The contact law (twin/contact_law.h) acts on them here, in every sub-step, with
+// the surface taken as flat and moving along with its body:
+//   u = v - s,   u' = Impact(u, n),   J = (I / m + W)^-1 (u' - u),   v += J / m
+// s: velocity of the surface, W: inverse mass that the body shows at the node. The body gets -J:
+// its motion goes on from there within the step, and MuJoCo gets the mean force.
+#ifndef PHYSPRING_PLUGIN_SURFACES_H_
+#define PHYSPRING_PLUGIN_SURFACES_H_
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "plugin/level.h"
+#include "twin/contact.h"
+#include "twin/node_state.h"
+
+namespace physpring {
+
+class Surfaces {
+ public:
+  // `level` must outlive this.
+  Surfaces(const mjModel* model, int instance, const Level& level);
+
+  // Takes the contacts that are this instance's, at the nodes' positions of `state`.
+  void Collect(const mjModel* model, mjData* data, const NodeStates<double>& state);
+
+  bool empty() const { return touches_.empty(); }
+  // The node of each contact.
+  template <class Function>
+  void ForEachNode(Function function) const {
+    for (const Touch& touch : touches_) function(touch.node);
+  }
+
+  // The velocities of `next` <- those after the contacts of a sub-step of h seconds, at the
+  // positions of `state`. Moves the surfaces on.
+  void Apply(const NodeStates<double>& state, double h, NodeStates<double>* next);
+
+  // Adds the forces on the other bodies to qfrc_passive: the impulses since Collect over `time`.
+  void AddReactions(const mjModel* model, mjData* data, double time) const;
+
+ private:
+  using Vector = Eigen::Vector3d;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+  // Another body that moves. Spatial vectors: first the angular part, then that of its centre of
+  // mass, in the world's axes.
+  struct Body {
+    int id;
+    Vector centre;     // m
+    Vector6 velocity;  // rad/s, m/s
+    Vector6 impulse;   // N m s, N s
+    Eigen::Matrix<double, 6, 6> inverse_inertia;
+  };
+  struct Touch {
+    int node;
+    int body;         // index in bodies_; -1 = fixed
+    bool is_object;   // a particle of another twin
+    Vector normal;    // of the surface, towards the node
+    Vector start;     // where the node was
+    double gap;       // from touching then, m; less than 0: overlap
+    double advanced;  // by the surface since, along the normal, m
+  };
+
+  void CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
+                      const mjContact& contact);
+  int FindBody(const mjModel* model, mjData* data, int body);
+  // Lets the node of a touch, with velocity v, hit the surface if it does; returns its velocity.
+  Vector Hit(const Touch& touch, const Vector& x, const Vector& v, double h);
+
+  int instance_;
+  std::vector<int> node_of_body_;  // -1: none
+  const Level* level_;
+  ContactLaws<double> laws_;
+  std::vector<Body> bodies_;
+  std::vector<Touch> touches_;
+  std::vector<double> jacobian_, solution_;  // 6 x nv
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_PLUGIN_SURFACES_H_
