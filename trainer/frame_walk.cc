@@ -2,6 +2,7 @@
 #include "trainer/frame_walk.h"
 
 #include "twin/environment.h"
+#include "twin/recorded_input.h"
 
 namespace physpring {
 namespace {
@@ -24,7 +25,7 @@ class FrameWalkIn : public FrameWalk {
 
   std::optional<double> Step(const SpringMassSystem& system, SystemGradient* gradient) override {
     simulator_.SetParameters(system);
-    const FrameInput input{recording_.controllers[frame_], recording_.controllers[frame_ + 1], {}};
+    const FrameInput input = RecordedInput(recording_, frame_ + 1, ControllerDelay(system));
     simulator_.RecordFrame(input, &state_, &workspace_);
     ++frame_;
     const Points position = simulator_.Positions(state_);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "twin/environment.h"
+#include "twin/recorded_input.h"
 
 namespace physpring {
 namespace {
@@ -18,6 +19,7 @@ class RolloutIn : public Rollout {
   RolloutIn(const SpringMassSystem& system, const Episode& episode, const RolloutOptions& options)
       : recording_(*episode.recording),
         growth_limit_(options.growth_limit),
+        delay_(ControllerDelay(system)),
         gradient_(system),
         simulator_(system, EnvironmentOf(recording_),
                    {1 / recording_.fps, options.substeps, options.controller_velocity}),
@@ -58,9 +60,7 @@ class RolloutIn : public Rollout {
   }
 
  private:
-  FrameInput Input(int frame) const {
-    return {recording_.controllers[frame - 1], recording_.controllers[frame], {}};
-  }
+  FrameInput Input(int frame) const { return RecordedInput(recording_, frame, delay_); }
 
   // Adds to the positions' part of state_bar; returns the norm of the sum.
   static double Add(const Points& position_bar, NodeStates<Real>* state_bar) {
@@ -77,6 +77,7 @@ class RolloutIn : public Rollout {
 
   const Recording& recording_;
   double growth_limit_;
+  double delay_;             // of the controllers, s
   SystemGradient gradient_;  // zero, of the right shapes
   Simulator<Real> simulator_;
   typename Simulator<Real>::Workspace workspace_;

@@ -9,6 +9,7 @@
 #include "twin/environment.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
+#include "twin/recorded_input.h"
 #include "twin/simulator.h"
 #include "twin/stability.h"
 
@@ -25,24 +26,19 @@ void ExpectEqual(const Twin& twin, const Recording& recording, const char* what,
       recording.name, recorded, what, twin.name, learned));
 }
 
-Points ControllersAt(const Recording& recording, int frame) {
-  return recording.controllers.empty() ? Points(3, 0) : recording.controllers[frame];
-}
-
 template <class Real>
 std::vector<Points> Simulate(const Twin& twin, int level, const Recording& recording,
                              int substeps) {
   const SimulationOptions options{1 / recording.fps, substeps, twin.controller_velocity};
   const Simulator<Real> simulator(twin.levels[level].system, EnvironmentOf(recording), options);
   typename Simulator<Real>::Workspace workspace(simulator);
+  const double delay = ControllerDelay(twin.levels[level].system);
   const Points start = recording.start.leftCols(recording.particle_count());
   auto state = simulator.MakeState(AverageOverMembers(twin, level, start),
                                    AverageOverMembers(twin, level, recording.velocity));
   std::vector<Points> positions{simulator.Positions(state)};
   for (int frame = 1; frame < recording.frame_count(); ++frame) {
-    simulator.AdvanceFrame(
-        {ControllersAt(recording, frame - 1), ControllersAt(recording, frame), {}}, &state,
-        &workspace);
+    simulator.AdvanceFrame(RecordedInput(recording, frame, delay), &state, &workspace);
     positions.push_back(simulator.Positions(state));
     if (positions.back().allFinite() && simulator.Velocities(state).allFinite()) continue;
     throw Error(fmt::format(

@@ -6,26 +6,6 @@
 
 namespace physpring {
 
-SystemGradient::SystemGradient(const SpringMassSystem& system)
-    : stiffness(Eigen::VectorXd::Zero(system.spring_count())),
-      rest_length(stiffness),
-      dashpot(stiffness),
-      mass(Eigen::VectorXd::Zero(system.node_count())) {}
-
-SystemGradient& SystemGradient::operator+=(const SystemGradient& other) {
-  stiffness += other.stiffness;
-  rest_length += other.rest_length;
-  dashpot += other.dashpot;
-  mass += other.mass;
-  drag += other.drag;
-  gravity += other.gravity;
-  contact.surface.restitution += other.contact.surface.restitution;
-  contact.surface.friction += other.contact.surface.friction;
-  contact.object.restitution += other.contact.object.restitution;
-  contact.object.friction += other.contact.object.friction;
-  return *this;
-}
-
 template <class Real>
 Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& environment,
                            const SimulationOptions& options, const Kernel<Real>& kernel)
@@ -35,13 +15,25 @@ Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& en
       options_(options),
       h_(static_cast<Real>(options.frame_time / options.substeps)),
       springs_(system),
-      contact_(system, environment) {
-  for (int j = 0; j < 3; ++j) kick_.f[j] = h_ * static_cast<Real>(environment.gravity[j]);
+      contact_(system, environment),
+      gravity_(environment.gravity) {
   SetParameters(system);
 }
 
 template <class Real>
 void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
+  if (system.effects.empty()) {
+    SetParameters(system, gravity_);
+    return;
+  }
+  effects_ = std::make_shared<const EffectStep<Real>>(system, gravity_);
+  SetParameters(effects_->changed().system, effects_->changed().gravity);
+}
+
+template <class Real>
+void Simulator<Real>::SetParameters(const SpringMassSystem& system,
+                                    const Eigen::Vector3d& gravity) {
+  for (int j = 0; j < 3; ++j) kick_.f[j] = h_ * static_cast<Real>(gravity[j]);
   springs_.SetParameters(system);
   contact_.SetParameters(system);
   decay_ = static_cast<Real>(std::exp(-options_.frame_time / options_.substeps * system.drag));
@@ -52,7 +44,7 @@ void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
 template <class Real>
 typename Simulator<Real>::State Simulator<Real>::MakeState(const Points& position,
                                                            const Points& velocity) const {
-  State state(springs_.spare_node + 1);
+  State state(state_size());
   for (int i = 0; i < nodes_; ++i) {
     for (int j = 0; j < 3; ++j) {
       state[i].x[j] = static_cast<Real>(position(j, i));
@@ -82,7 +74,7 @@ Points Simulator<Real>::Velocities(const State& state) const {
 
 template <class Real>
 Simulator<Real>::Workspace::Workspace(const Simulator& simulator)
-    : next(simulator.springs_.spare_node + 1),
+    : next(simulator.state_size()),
       force(simulator.springs_.spare_node + 1),
       spring_gradient(simulator.springs_.size()) {}
 
@@ -104,12 +96,16 @@ template <class Real>
 void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs,
                               int substep, State* state, State* next,
                               typename Contact<Real>::Impacts* impacts,
-                              NodeForces<Real>* force) const {
+                              Workspace* workspace) const {
   PlaceControllers(input, substep, state);
-  std::fill(force->begin(), force->end(), NodeForce<Real>{});
-  kernel_->add_spring_forces(springs_.View(), state->data(), force->data());
-  kernel_->update_velocities(Nodes(), state->data(), force->data(), next->data());
+  NodeForces<Real>& force = workspace->force;
+  std::fill(force.begin(), force.end(), NodeForce<Real>{});
+  kernel_->add_spring_forces(springs_.View(), state->data(), force.data());
   const double h = options_.frame_time / options_.substeps;
+  if (effects_) {
+    effects_->AddForces(TimeOf(input, substep), h, *state, next, &force, &workspace->effects);
+  }
+  kernel_->update_velocities(Nodes(), state->data(), force.data(), next->data());
   contact_.Apply(*state, pairs, input.geoms, substep * h, h, next, impacts);
   kernel_->update_positions(Nodes(), state->data(), next->data());
 }
@@ -127,15 +123,22 @@ void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* w
       {workspace->mass_gradient.data(), &workspace->drag_gradient, &workspace->gravity_gradient});
   kernel_->add_spring_forces_adjoint(springs_.View(), state.data(), workspace->force.data(),
                                      state_bar->data(), workspace->spring_gradient.View());
+  if (!effects_) return;
+  effects_->AddForcesAdjoint(TimeOf(workspace->input, substep),
+                             options_.frame_time / options_.substeps, state, workspace->force,
+                             state_bar, &workspace->effects);
+  effects_->TakeControllers(static_cast<double>(substep + 1) / options_.substeps,
+                            options_.controller_velocity ? options_.frame_time : 0, state_bar,
+                            &workspace->effects);
 }
 
 template <class Real>
 void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
                                    Workspace* workspace) const {
   const auto pairs = contact_.FindPairs(*state, options_.frame_time);
-  workspace->impacts.resize(1);
+  if (workspace->impacts.empty()) workspace->impacts.resize(1);
   for (int i = 0; i < options_.substeps; ++i) {
-    Substep(input, pairs, i, state, &workspace->next, &workspace->impacts[0], &workspace->force);
+    Substep(input, pairs, i, state, &workspace->next, &workspace->impacts[0], workspace);
     std::swap(*state, workspace->next);
   }
   PlaceControllers(input, options_.substeps - 1, state);
@@ -159,8 +162,9 @@ void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
   workspace->states[0] = *state;
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, pairs, i, &workspace->states[i], &workspace->states[i + 1],
-            &workspace->impacts[i], &workspace->force);
+            &workspace->impacts[i], workspace);
   }
+  if (effects_) workspace->input = input;
   *state = workspace->states[options_.substeps];
   PlaceControllers(input, options_.substeps - 1, state);
 }
@@ -169,12 +173,22 @@ template <class Real>
 void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gradient,
                                            Workspace* workspace) const {
   workspace->ClearGradients(nodes_);
+  if (effects_) effects_->ClearGradient(&workspace->effects);
   // controllers and the spare node feel no force: their entries stay 0
   std::fill(workspace->force.begin(), workspace->force.end(), NodeForce<Real>{});
   for (int i = options_.substeps - 1; i >= 0; --i) SubstepAdjoint(i, state_bar, workspace);
   // the controllers' motion is given: what was added to them does not count
-  std::fill(state_bar->begin() + nodes_, state_bar->end(), NodeState<Real>{});
-  AddGradients(*workspace, gradient);
+  std::fill(state_bar->begin() + nodes_, state_bar->begin() + springs_.spare_node + 1,
+            NodeState<Real>{});
+  if (!effects_) {
+    AddGradients(*workspace, gradient);
+    return;
+  }
+  SystemGradient frame(effects_->changed().system);
+  AddGradients(*workspace, &frame);
+  effects_->FinishGradient(workspace->input.delay_rate_start, workspace->input.delay_rate_end,
+                           workspace->effects, &frame);
+  *gradient += frame;
 }
 
 template <class Real>

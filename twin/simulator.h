@@ -3,6 +3,7 @@
 // sub-steps of h = frame_time / substeps; each is semi-implicit Euler:
 //   controllers to their place at the end of the sub-step (linear within the frame)
 //   F   springs and dashpots at (x, v)                                 spring_force.h
+//       and the system's effects, if it has any                        effects/effect.h
 //   v*  = (v + h (F / m + g)) exp(-h drag)                             node_update.h
 //   v'  = contacts(v*)                                                 contact.h
 //   x'  = x + h v'                                                     node_update.h
@@ -11,14 +12,17 @@
 #ifndef PHYSPRING_TWIN_SIMULATOR_H_
 #define PHYSPRING_TWIN_SIMULATOR_H_
 
+#include <memory>
 #include <vector>
 
 #include "twin/contact.h"
+#include "twin/effects/effect_step.h"
 #include "twin/environment.h"
 #include "twin/kernel_choice.h"
 #include "twin/node_state.h"
 #include "twin/spring_blocks.h"
 #include "twin/spring_mass_system.h"
+#include "twin/system_gradient.h"
 
 namespace physpring {
 
@@ -33,18 +37,10 @@ struct SimulationOptions {
 struct FrameInput {
   Points controllers_start, controllers_end;
   std::vector<Geom> geoms;
-};
-
-// Derivatives of a loss with respect to everything learnable. Shapes as in SpringMassSystem.
-struct SystemGradient {
-  Eigen::VectorXd stiffness, rest_length, dashpot;  // (springs)
-  Eigen::VectorXd mass;                             // (nodes)
-  double drag = 0;
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  ContactLaws<double> contact;  // surface and object restitution and friction
-
-  explicit SystemGradient(const SpringMassSystem& system);
-  SystemGradient& operator+=(const SystemGradient& other);
+  double time = 0;  // at its start, since the start of the recording, s
+  // How fast controllers_start and controllers_end change with a delay of the controllers (m/s,
+  // recorded_input.h); only its derivative needs it.
+  Points delay_rate_start = Points(3, 0), delay_rate_end = Points(3, 0);
 };
 
 template <class Real>
@@ -55,7 +51,7 @@ class Simulator {
   Simulator(const SpringMassSystem& system, const Environment& environment,
             const SimulationOptions& options, const Kernel<Real>& kernel = BestKernel<Real>());
 
-  // The parameters, masses and drag of a system of the same topology.
+  // The parameters, masses, drag and effects of a system of the same topology and effects.
   void SetParameters(const SpringMassSystem& system);
 
   // State of free nodes at `position` and `velocity` (3 x nodes).
@@ -86,9 +82,17 @@ class Simulator {
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
   void Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs, int substep,
                State* state, State* next, typename Contact<Real>::Impacts* impacts,
-               NodeForces<Real>* force) const;
+               Workspace* workspace) const;
   void SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const;
   void AddGradients(const Workspace& workspace, SystemGradient* gradient) const;
+
+  void SetParameters(const SpringMassSystem& system, const Eigen::Vector3d& gravity);
+  int state_size() const {
+    return springs_.spare_node + 1 + (effects_ ? effects_->extra_records() : 0);
+  }
+  double TimeOf(const FrameInput& input, int substep) const {
+    return input.time + substep * options_.frame_time / options_.substeps;
+  }
 
   NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
 
@@ -101,6 +105,8 @@ class Simulator {
   std::vector<Real> h_over_mass_;
   SpringBlocks<Real> springs_;
   Contact<Real> contact_;
+  Eigen::Vector3d gravity_;                          // of the environment, m/s^2
+  std::shared_ptr<const EffectStep<Real>> effects_;  // null for a system without effects
 };
 
 template <class Real>
@@ -122,6 +128,9 @@ class Simulator<Real>::Workspace {
   NodeForces<Real> mass_gradient;  // this, drag and gravity: see node_update.h
   NodeForce<Real> drag_gradient, gravity_gradient;
   ContactGradient<Real> contact_gradient;
+
+  EffectBuffers effects;
+  FrameInput input;  // of the frame that was recorded last; only effects need it
 };
 
 }  // namespace physpring

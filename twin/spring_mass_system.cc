@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "twin/effects/registry.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -88,6 +89,16 @@ void ValidateContact(const SpringMassSystem& system, const std::string& where) {
 
 }  // namespace
 
+std::vector<int> SpringMassSystem::UnjoinedControllers() const {
+  std::vector<bool> joined(position.cols(), false);
+  for (const auto& [a, b] : springs) joined[a] = joined[b] = true;
+  std::vector<int> unjoined;
+  for (int c = 0; c < controllers; ++c) {
+    if (!joined[node_count() + c]) unjoined.push_back(c);
+  }
+  return unjoined;
+}
+
 void SpringMassSystem::Validate(const std::string& where) const {
   ValidatePositions(*this, where);
   ValidateSprings(*this, where);
@@ -97,6 +108,7 @@ void SpringMassSystem::Validate(const std::string& where) const {
   ExpectEach(where + ": dashpot", dashpot, spring_count(), 0);
   ExpectInRange(where + ": drag", drag, 0, kInfinity);
   ValidateContact(*this, where);
+  for (const EffectValues& effect : effects) ValidateEffect(effect, where);
 }
 
 }  // namespace physpring

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/effects/effect_values.h"
 #include "twin/points.h"
 
 namespace physpring {
@@ -34,14 +35,23 @@ struct SpringMassSystem {
   Eigen::VectorXd dashpot;                  // (springs), N s/m, >= 0
   double drag = 0;                          // 1/s, >= 0: v <- v exp(-h drag)
 
+  // Arc length of nodes and controllers along a rod, m; empty if the body is no rod.
+  Eigen::VectorXd order;
+  // Physics besides that of springs, drag and contact; they act in this order.
+  std::vector<EffectValues> effects;
+
   ContactCoefficients contact;
   Eigen::VectorXd contact_radius;  // (nodes), m: distance from a surface at which a node touches it
 
   int node_count() const { return static_cast<int>(position.cols()) - controllers; }
   int spring_count() const { return static_cast<int>(springs.size()); }
 
+  // Controllers (0, 1, ...) that no spring joins to a node: they move nothing.
+  std::vector<int> UnjoinedControllers() const;
+
   // Throws Error, one line that begins with `where`, unless all shapes agree, all numbers are
-  // finite and in range, and no spring joins a node to itself, a pair twice, or two controllers.
+  // finite and in range, effects are known, and no spring joins a node to itself, a pair twice, or
+  // two controllers.
   void Validate(const std::string& where) const;
 };
 

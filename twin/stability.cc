@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "twin/effects/effect_set.h"
+
 namespace physpring {
 namespace {
 
@@ -59,6 +61,7 @@ double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& 
 }  // namespace
 
 StabilityBound ComputeStabilityBound(const SpringMassSystem& system) {
+  if (!system.effects.empty()) return ComputeStabilityBound(BoundingSystem(system));
   const double omega_squared = LargestEigenvalue(system, system.stiffness);
   const double gamma = LargestEigenvalue(system, system.dashpot);
   // h^2 omega^2 + 2 h gamma = 4, in a form that does not cancel

@@ -4,7 +4,8 @@
 // A mode of frequency omega and damping rate gamma (v <- v - h (omega^2 x + gamma v), x <- x + h v)
 // is stable while h^2 omega^2 + 2 h gamma < 4. The largest eigenvalues of M^-1 K and M^-1 C bound
 // omega^2 and gamma; K and C are taken as scalar Laplacians, which bound the true (directional)
-// matrices in every configuration: k n n^T + k (1 - L / l) (I - n n^T) <= k I.
+// matrices in every configuration: k n n^T + k (1 - L / l) (I - n n^T) <= k I. Effects count as
+// springs that are as stiff (Effect::Stiffen).
 #ifndef PHYSPRING_TWIN_STABILITY_H_
 #define PHYSPRING_TWIN_STABILITY_H_
 

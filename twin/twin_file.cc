@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "twin/effects/effect_json.h"
 #include "twin/error.h"
+#include "twin/hierarchy.h"
 #include "twin/json_fields.h"
 #include "twin/npz.h"
 #include "twin/npz_fields.h"
@@ -63,6 +65,9 @@ void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) 
   if (!level.assignment.empty()) {
     arrays[prefix + "assignment"] =
         NpzArray::Ints({level.assignment.size()}, level.assignment.data());
+  }
+  if (!system.effects.empty()) {
+    arrays[prefix + "effects"] = NpzArray::Text(EffectsToJson(system.effects));
   }
   VisitScalars(level, [&](const char* name, const double& value) {
     arrays[prefix + name] = NpzArray::Doubles({}, &value);
@@ -197,6 +202,10 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
   for (std::size_t i = 0; i < ends.size(); i += 2) {
     level.system.springs.push_back({ends[i], ends[i + 1]});
   }
+  if (fields.Has(prefix + "effects")) {
+    level.system.effects =
+        EffectsFromJson(fields.Text(prefix + "effects"), where + ": array 'effects'");
+  }
   level.system.Validate(where);
   if (ends.empty()) fields.Fail(prefix + "springs", "holds no spring, expected one or more");
 
@@ -234,6 +243,7 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   twin.gravity = fields.Vector("gravity", "3");
   fields.SetExtent("nodes+controllers", Size(twin.levels[0].system.position.cols()));
   if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
+  SpreadOrder(&twin);
 
   for (const auto& [name, array] : arrays) {
     if (name.starts_with(kStatePrefix)) twin.training_state[name] = array;

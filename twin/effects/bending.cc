@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stiffness against bending: the moment at a triple of nodes is B kappa / length, the one of an
+// elastic rod of flexural rigidity B [N m^2] that is straight at rest.
+#include "twin/effects/bend_effect.h"
+
+namespace physpring {
+namespace {
+
+class BendingForce : public BendEffectForce {
+ public:
+  using BendEffectForce::BendEffectForce;
+
+ protected:
+  Vector Moment(int triple, const Bend& bend, double, Vector*) const override {
+    return values_[0] / triples()[triple].length * bend.bend;
+  }
+  void MomentAdjoint(int triple, const Bend& bend, double, const Vector&, const Vector& moment_bar,
+                     Vector*, Bend* bar, Eigen::VectorXd* values_bar) const override {
+    const double length = triples()[triple].length;
+    (*values_bar)[0] += moment_bar.dot(bend.bend) / length;
+    bar->bend += values_[0] / length * moment_bar;
+  }
+};
+
+class Bending : public Effect {
+ public:
+  std::string name() const override { return "bending"; }
+  std::vector<EffectParameter> parameters() const override {
+    return {{"flexural_rigidity_n_m2", 0, 10, 1e-4}};
+  }
+  std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
+    return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 1e-4)};
+  }
+  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
+                                         const Eigen::VectorXd& values) const override {
+    return std::make_unique<BendingForce>(system, values);
+  }
+  void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
+    StiffenLikeBending(values[0], 0, bound);
+  }
+  EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
+    return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not bend"};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakeBending() { return std::make_unique<Bending>(); }
+
+}  // namespace physpring

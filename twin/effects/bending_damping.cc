@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Damping of bending: the moment at a triple of nodes is D kappa_dot / length. Drag also damps the
+// motion of the whole, dashpots also that along the springs; this only changes of shape.
+#include "twin/effects/bend_effect.h"
+
+namespace physpring {
+namespace {
+
+class BendingDampingForce : public BendEffectForce {
+ public:
+  using BendEffectForce::BendEffectForce;
+
+ protected:
+  Vector Moment(int triple, const Bend& bend, double, Vector*) const override {
+    return values_[0] / triples()[triple].length * bend.rate;
+  }
+  void MomentAdjoint(int triple, const Bend& bend, double, const Vector&, const Vector& moment_bar,
+                     Vector*, Bend* bar, Eigen::VectorXd* values_bar) const override {
+    const double length = triples()[triple].length;
+    (*values_bar)[0] += moment_bar.dot(bend.rate) / length;
+    bar->rate += values_[0] / length * moment_bar;
+  }
+};
+
+class BendingDamping : public Effect {
+ public:
+  std::string name() const override { return "bending_damping"; }
+  std::vector<EffectParameter> parameters() const override {
+    return {{"damping_n_m2_s", 0, 1, 1e-5}};
+  }
+  std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
+    return {Eigen::VectorXd::Zero(1)};
+  }
+  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
+                                         const Eigen::VectorXd& values) const override {
+    return std::make_unique<BendingDampingForce>(system, values);
+  }
+  void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
+    StiffenLikeBending(0, values[0], bound);
+  }
+  EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
+    return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not bend"};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakeBendingDamping() { return std::make_unique<BendingDamping>(); }
+
+}  // namespace physpring

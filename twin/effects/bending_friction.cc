@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Friction of bending, independent of the rate (strands of a cable that slide): at each triple a
+// moment m that gives way at the angle delta (Prandtl's element in two dimensions):
+//   z <- z + h kappa_dot, shortened to |z| <= delta,   M = m z / delta
+#include <algorithm>
+
+#include "twin/effects/bend_effect.h"
+
+namespace physpring {
+namespace {
+
+class BendingFrictionForce : public BendEffectForce {
+ public:
+  using BendEffectForce::BendEffectForce;
+
+ protected:
+  bool has_internal() const override { return true; }
+
+  Vector Moment(int, const Bend& bend, double step, Vector* z) const override {
+    const double slip = values_[1];
+    if (slip == 0) return Vector::Zero();
+    *z += step * bend.rate;
+    if (z->norm() > slip) *z *= slip / z->norm();
+    return values_[0] / slip * *z;
+  }
+
+  void MomentAdjoint(int, const Bend& bend, double step, const Vector& z, const Vector& moment_bar,
+                     Vector* z_bar, Bend* bar, Eigen::VectorXd* values_bar) const override {
+    const double slip = values_[1];
+    if (slip == 0) return;
+    const Vector free = z + step * bend.rate;
+    const double length = free.norm();
+    const bool slips = length > slip;
+    const Vector after = slips ? Vector(slip / length * free) : free;
+    // forward: M = m z / delta
+    const double along = moment_bar.dot(after) / slip;
+    (*values_bar)[0] += along;
+    (*values_bar)[1] -= values_[0] * along / slip;
+    *z_bar += values_[0] / slip * moment_bar;
+    if (slips) {
+      // forward: z' = delta z / |z|
+      const Vector direction = free / length;
+      (*values_bar)[1] += direction.dot(*z_bar);
+      *z_bar = slip / length * (*z_bar - direction.dot(*z_bar) * direction);
+    }
+    bar->rate += step * *z_bar;
+  }
+};
+
+class BendingFriction : public Effect {
+ public:
+  std::string name() const override { return "bending_friction"; }
+  std::vector<EffectParameter> parameters() const override {
+    return {{"moment_n_m", 0, 10, 1e-3},
+            {"slip_angle_rad", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};
+  }
+  std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
+    return {Eigen::Vector2d(0, 0.03), Eigen::Vector2d(1e-3, 0.1)};
+  }
+  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
+                                         const Eigen::VectorXd& values) const override {
+    return std::make_unique<BendingFrictionForce>(system, values);
+  }
+  void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
+    if (values.isZero() || values[1] == 0) return;
+    StiffenLikeBending(values[0] / values[1] * LongestTriple(*bound), 0, bound);
+  }
+  EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
+    return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not bend"};
+  }
+
+ private:
+  // B / length is the stiffness of the moment at each triple, or more.
+  static double LongestTriple(const SpringMassSystem& system) {
+    double longest = 0;
+    for (const BendingTriple& triple : FindBendingTriples(system)) {
+      longest = std::max(longest, triple.length);
+    }
+    return longest;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakeBendingFriction() { return std::make_unique<BendingFriction>(); }
+
+}  // namespace physpring

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/effects/bending_triples.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace physpring {
+namespace {
+
+constexpr double kOpposite = -0.94;  // cosine of the angle between opposite springs, at most
+
+BendingTriple MakeTriple(const SpringMassSystem& system, int a, int b, int c) {
+  const Points& x = system.position;
+  return {a, b, c, ((x.col(b) - x.col(a)).norm() + (x.col(c) - x.col(b)).norm()) / 2};
+}
+
+std::vector<BendingTriple> AlongRod(const SpringMassSystem& system) {
+  std::vector<int> sorted(static_cast<std::size_t>(system.order.size()));
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](int i, int j) { return system.order[i] < system.order[j]; });
+  std::vector<BendingTriple> triples;
+  for (std::size_t i = 2; i < sorted.size(); ++i) {
+    const int a = sorted[i - 2], b = sorted[i - 1], c = sorted[i];
+    if (std::min({a, b, c}) < system.node_count()) triples.push_back(MakeTriple(system, a, b, c));
+  }
+  return triples;
+}
+
+}  // namespace
+
+std::vector<BendingTriple> FindBendingTriples(const SpringMassSystem& system) {
+  if (system.order.size() > 0) return AlongRod(system);
+  const Points& x = system.position;
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(x.cols()));
+  for (const auto& [a, b] : system.springs) {
+    neighbours[static_cast<std::size_t>(a)].push_back(b);
+    neighbours[static_cast<std::size_t>(b)].push_back(a);
+  }
+  std::vector<BendingTriple> triples;
+  for (int b = 0; b < x.cols(); ++b) {
+    const std::vector<int>& around = neighbours[static_cast<std::size_t>(b)];
+    // the neighbour that is most opposite to each one
+    const auto opposite = [&](int a) {
+      int best = -1;
+      double least = kOpposite;
+      for (int c : around) {
+        const Eigen::Vector3d p = x.col(a) - x.col(b), q = x.col(c) - x.col(b);
+        const double cosine = p.dot(q) / (p.norm() * q.norm());
+        if (cosine >= least) continue;
+        least = cosine;
+        best = c;
+      }
+      return best;
+    };
+    for (int a : around) {
+      const int c = opposite(a);
+      if (c > a && opposite(c) == a && std::min({a, b, c}) < system.node_count()) {
+        triples.push_back(MakeTriple(system, a, b, c));
+      }
+    }
+  }
+  return triples;
+}
+
+}  // namespace physpring

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/effects/effect.h"
+
+namespace physpring {
+
+void Effect::Change(const Eigen::VectorXd&, Setting*) const {}
+
+void Effect::ChangeAdjoint(const Eigen::VectorXd&, const Setting&, SystemGradient*,
+                           Eigen::VectorXd*) const {}
+
+std::unique_ptr<EffectForce> Effect::MakeForce(const SpringMassSystem&,
+                                               const Eigen::VectorXd&) const {
+  return nullptr;
+}
+
+void Effect::Stiffen(const Eigen::VectorXd&, SpringMassSystem*) const {}
+
+int Effect::value_count() const {
+  int count = 0;
+  for (const EffectParameter& parameter : parameters()) count += parameter.count;
+  return count;
+}
+
+}  // namespace physpring

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// An effect: a piece of physics that a spring-mass system may have besides its springs, its drag
+// and its contacts. A system names its effects with their values (spring_mass_system.h); what the
+// values mean is said here, once for each effect, in a file of its own. An effect may
+//   change the setting before the simulation (masses, rest lengths, gravity, contact coefficients),
+//   delay the controllers' motion,
+//   add forces in each sub-step, from positions, velocities, time and internal variables of its
+//   own, which start at 0 and are part of the simulator's state.
+// Each has its adjoint. Values of 0 change nothing. Effects are computed in double precision also
+// where the simulator is not. twin/effects/registry.h lists them.
+#ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_H_
+#define PHYSPRING_TWIN_EFFECTS_EFFECT_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/effects/effect_mjcf.h"
+#include "twin/spring_mass_system.h"
+#include "twin/system_gradient.h"
+
+namespace physpring {
+
+// A parameter of an effect: one value, or several of a kind, one after the other.
+struct EffectParameter {
+  enum class Spacing { kEven, kLogarithmic };  // how a search moves it
+  std::string key;                             // with the unit: "mass_kg"
+  double low, high;                            // bounds of each value
+  double scale;                                // a change that matters; if logarithmic a factor e
+  int count = 1;
+  Spacing spacing = Spacing::kEven;
+};
+
+// What an effect may change before a simulation.
+struct Setting {
+  SpringMassSystem system;
+  Eigen::Vector3d gravity;  // m/s^2
+};
+
+// The sub-step in which forces act.
+struct Instant {
+  double time;      // s since the start of the recording
+  double step;      // length of the sub-step, s
+  const Points& x;  // 3 x (nodes + controllers), m
+  const Points& v;  // m/s
+};
+
+// Where the adjoint of forces adds d loss / d what the forces depend on.
+struct InstantGradient {
+  Points x, v;                 // 3 x (nodes + controllers)
+  Eigen::VectorXd values;      // of the effect
+  SystemGradient* parameters;  // of the system that it acts on
+};
+
+// The forces of one effect with given values on one system, which must outlive it.
+class EffectForce {
+ public:
+  virtual ~EffectForce() = default;
+
+  // How many internal variables there are.
+  virtual int internal_size() const { return 0; }
+
+  // Adds the forces [N] on nodes (and on controllers, where they do nothing) to `force`, and
+  // advances the internal variables by the sub-step.
+  virtual void Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd> internal,
+                   Points* force) const = 0;
+
+  // Adjoint of Add. `internal`: the variables before it. `internal_bar`: in d loss / d variables
+  // after, out before. Adds to `gradient`.
+  virtual void AddAdjoint(const Instant& instant, const Eigen::Ref<const Eigen::VectorXd>& internal,
+                          const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
+                          InstantGradient* gradient) const = 0;
+};
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+
+  virtual std::string name() const = 0;
+  virtual std::vector<EffectParameter> parameters() const = 0;
+
+  // Values from which a search on `system` begins: one or more of them, each near to no effect or
+  // of a usual size.
+  virtual std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const = 0;
+
+  // Before the simulation. Adjoint: `gradient`, in d loss / d the changed setting, out d loss / d
+  // `before`; adds to values_bar.
+  virtual void Change(const Eigen::VectorXd& values, Setting* setting) const;
+  virtual void ChangeAdjoint(const Eigen::VectorXd& values, const Setting& before,
+                             SystemGradient* gradient, Eigen::VectorXd* values_bar) const;
+
+  // How much later than recorded the controllers move, s. If `delays`, it is the first value.
+  virtual bool delays() const { return false; }
+
+  // Nothing if the effect has no forces.
+  virtual std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
+                                                 const Eigen::VectorXd& values) const;
+
+  // Makes the springs of `bound` so stiff, or adds springs to it, that the sub-steps that are
+  // stable for it are stable for the system with the effect (twin/stability.h).
+  virtual void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const;
+
+  // What stands for the effect in MuJoCo. The changed setting is exported by itself.
+  virtual EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const = 0;
+
+  int value_count() const;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_EFFECTS_EFFECT_H_

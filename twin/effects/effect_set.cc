@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/effects/effect_set.h"
+
+#include "twin/effects/registry.h"
+
+namespace physpring {
+
+Setting ApplyEffects(const SpringMassSystem& system, const Eigen::Vector3d& gravity) {
+  Setting setting{system, gravity};
+  for (const EffectValues& effect : system.effects) {
+    GetEffect(effect.name).Change(effect.values, &setting);
+  }
+  return setting;
+}
+
+double ControllerDelay(const SpringMassSystem& system) {
+  double delay = 0;
+  for (const EffectValues& effect : system.effects) {
+    if (GetEffect(effect.name).delays()) delay += effect.values[0];
+  }
+  return delay;
+}
+
+SpringMassSystem BoundingSystem(const SpringMassSystem& system) {
+  SpringMassSystem bound = ApplyEffects(system, Eigen::Vector3d::Zero()).system;
+  for (const EffectValues& effect : system.effects) {
+    GetEffect(effect.name).Stiffen(effect.values, &bound);
+  }
+  bound.effects.clear();
+  return bound;
+}
+
+EffectSet::EffectSet(const SpringMassSystem& system, const Eigen::Vector3d& gravity)
+    : settings_{{system, gravity}}, offset_{0} {
+  for (const EffectValues& effect : system.effects) {
+    effects_.push_back(&GetEffect(effect.name));
+    settings_.push_back(settings_.back());
+    effects_.back()->Change(effect.values, &settings_.back());
+  }
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    forces_.push_back(effects_[i]->MakeForce(changed().system, system.effects[i].values));
+    offset_.push_back(offset_.back() + (forces_[i] ? forces_[i]->internal_size() : 0));
+  }
+}
+
+void EffectSet::AddForces(const Instant& instant, Eigen::VectorXd* internal, Points* force) const {
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    if (!forces_[i]) continue;
+    forces_[i]->Add(instant, internal->segment(offset_[i], offset_[i + 1] - offset_[i]), force);
+  }
+}
+
+void EffectSet::AddForcesAdjoint(const Instant& instant, const Eigen::VectorXd& internal,
+                                 const Points& force_bar, Eigen::VectorXd* internal_bar,
+                                 Points* x_bar, Points* v_bar, SystemGradient* gradient) const {
+  InstantGradient sum{
+      Points::Zero(3, instant.x.cols()), Points::Zero(3, instant.x.cols()), {}, gradient};
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    if (!forces_[i]) continue;
+    const int size = offset_[i + 1] - offset_[i];
+    sum.values.setZero(gradient->effects[i].size());
+    forces_[i]->AddAdjoint(instant, internal.segment(offset_[i], size), force_bar,
+                           internal_bar->segment(offset_[i], size), &sum);
+    gradient->effects[i] += sum.values;
+  }
+  *x_bar += sum.x;
+  *v_bar += sum.v;
+}
+
+void EffectSet::ChangeAdjoint(double delay_bar, SystemGradient* gradient) const {
+  for (std::size_t i = effects_.size(); i-- > 0;) {
+    effects_[i]->ChangeAdjoint(settings_[0].system.effects[i].values, settings_[i], gradient,
+                               &gradient->effects[i]);
+    if (effects_[i]->delays()) gradient->effects[i][0] += delay_bar;
+  }
+}
+
+}  // namespace physpring

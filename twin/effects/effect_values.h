@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_VALUES_H_
+#define PHYSPRING_TWIN_EFFECTS_EFFECT_VALUES_H_
+
+#include <Eigen/Core>
+#include <string>
+
+namespace physpring {
+
+// An effect that a system has: which, and the values of its parameters, one after the other
+// (twin/effects/effect.h).
+struct EffectValues {
+  std::string name;
+  Eigen::VectorXd values;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_EFFECTS_EFFECT_VALUES_H_

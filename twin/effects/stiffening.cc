@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Springs that stiffen with strain: the extra tension is alpha k (l - L)^3 / L^2, in MuJoCo the
+// third coefficient of a tendon's stiffness.
+#include <fmt/format.h>
+
+#include "twin/effects/spring_effect.h"
+
+namespace physpring {
+namespace {
+
+class StiffeningForce : public SpringEffectForce {
+ public:
+  using SpringEffectForce::SpringEffectForce;
+
+ protected:
+  double Tension(const SpringMoment& s, const Instant&, double*) const override {
+    const double strain = (s.length - s.rest_length) / s.rest_length;
+    return values_[0] * s.stiffness * s.rest_length * strain * strain * strain;
+  }
+  void TensionAdjoint(const SpringMoment& s, const Instant&, double, double tension_bar, double*,
+                      SpringMoment* bar, Eigen::VectorXd* values_bar) const override {
+    const double strain = (s.length - s.rest_length) / s.rest_length;
+    const double cube = strain * strain * strain;
+    (*values_bar)[0] += tension_bar * s.stiffness * s.rest_length * cube;
+    bar->stiffness += tension_bar * values_[0] * s.rest_length * cube;
+    // forward: strain = l / L - 1
+    const double slope = tension_bar * values_[0] * s.stiffness * 3 * strain * strain;
+    bar->length += slope;
+    bar->rest_length +=
+        tension_bar * values_[0] * s.stiffness * cube - slope * s.length / s.rest_length;
+  }
+};
+
+class Stiffening : public Effect {
+ public:
+  std::string name() const override { return "stiffening"; }
+  std::vector<EffectParameter> parameters() const override {
+    return {{"cubic_stiffness_ratio", 0, 1e4, 20}};
+  }
+  std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
+    return {Eigen::VectorXd::Zero(1)};
+  }
+  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
+                                         const Eigen::VectorXd& values) const override {
+    return std::make_unique<StiffeningForce>(system, values);
+  }
+  void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
+    // at the strains that a soft body lives in
+    constexpr double kStrain = 0.3;
+    bound->stiffness *= 1 + 3 * values[0] * kStrain * kStrain;
+  }
+  EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
+    EffectMjcf mjcf{EffectMjcf::Carrier::kTendon, {}, {}, ""};
+    for (int e = 0; e < system.spring_count(); ++e) {
+      const double length = system.rest_length[e];
+      mjcf.tendon.push_back(
+          {{"stiffness", fmt::format("{} 0 {}", system.stiffness[e],
+                                     values[0] * system.stiffness[e] / (length * length))}});
+    }
+    return mjcf;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> MakeStiffening() { return std::make_unique<Stiffening>(); }
+
+}  // namespace physpring

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The input of a frame of a recording: how the recorded controllers move in it, later than recorded
+// by the delay that the system's effects ask for (twin/effects/control_latency.cc).
+#ifndef PHYSPRING_TWIN_RECORDED_INPUT_H_
+#define PHYSPRING_TWIN_RECORDED_INPUT_H_
+
+#include "twin/recording.h"
+#include "twin/simulator.h"
+
+namespace physpring {
+
+// Of the way from frame - 1 to `frame` (>= 1). Controllers are linear between frames and stand
+// still before frame 0.
+FrameInput RecordedInput(const Recording& recording, int frame, double delay);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_RECORDED_INPUT_H_
