@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/support/rollout.h"
+#include "tests/support/targeted_rollout.h"
 
 namespace physpring {
 namespace {
@@ -16,13 +16,13 @@ constexpr double kSmooth = 1e-3;
 // than the way to the next jump.
 constexpr double kContact = 1e-5;
 
-void ExpectGradientMatches(const Rollout& rollout, double step) {
+void ExpectGradientMatches(const TargetedRollout& rollout, double step) {
   for (const GradientReport& report : CheckRollout(rollout, step)) {
     EXPECT_TRUE(report.passed) << report.log;
   }
 }
 
-bool HasSurfaceContact(const Rollout& rollout) {
+bool HasSurfaceContact(const TargetedRollout& rollout) {
   return Gradient<double>(rollout).system.contact.surface.restitution != 0;
 }
 
@@ -31,14 +31,14 @@ TEST(SimulatorAdjoint, MatchesDifferencesWithoutContact) {
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesWithoutControllerVelocity) {
-  Rollout rollout = RandomRollout(4, 1);
+  TargetedRollout rollout = RandomRollout(4, 1);
   rollout.options.controller_velocity = false;
   ExpectGradientMatches(rollout, kSmooth);
 }
 
 // A network that falls on the ground at 1 m/s.
-Rollout OnTheGround(double restitution, double friction) {
-  Rollout rollout = RandomRollout(4, 1);
+TargetedRollout OnTheGround(double restitution, double friction) {
+  TargetedRollout rollout = RandomRollout(4, 1);
   rollout.environment.ground = Eigen::Vector4d(0, 0, 1, -0.085);
   rollout.velocity.row(2).array() -= 1;
   rollout.system.contact.restitution = restitution;
@@ -47,19 +47,19 @@ Rollout OnTheGround(double restitution, double friction) {
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesWhenBouncing) {
-  const Rollout rollout = OnTheGround(0.9, 0.1);
+  const TargetedRollout rollout = OnTheGround(0.9, 0.1);
   ASSERT_TRUE(HasSurfaceContact(rollout));
   ExpectGradientMatches(rollout, kContact);
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesWhenSliding) {
-  const Rollout rollout = OnTheGround(0, 0.02);
+  const TargetedRollout rollout = OnTheGround(0, 0.02);
   ASSERT_TRUE(HasSurfaceContact(rollout));
   ExpectGradientMatches(rollout, kContact);
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesWhenSticking) {
-  const Rollout rollout = OnTheGround(0, 2);
+  const TargetedRollout rollout = OnTheGround(0, 2);
   ASSERT_TRUE(HasSurfaceContact(rollout));
   ExpectGradientMatches(rollout, kContact);
 }
@@ -84,15 +84,15 @@ std::vector<Geom> BoxSphereAndCapsule() {
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesAmongMovingGeoms) {
-  Rollout rollout = RandomRollout(4, 1);
+  TargetedRollout rollout = RandomRollout(4, 1);
   for (FrameInput& input : rollout.frames) input.geoms = BoxSphereAndCapsule();
   ASSERT_TRUE(HasSurfaceContact(rollout));
   ExpectGradientMatches(rollout, kContact);
 }
 
 // Particles that are far apart in the reference are near now.
-Rollout WithCollisions() {
-  Rollout rollout = RandomRollout(4, 1);
+TargetedRollout WithCollisions() {
+  TargetedRollout rollout = RandomRollout(4, 1);
   rollout.position *= 0.5;
   rollout.velocity *= 3;
   rollout.system.contact.collision_distance = 0.03;
@@ -100,13 +100,13 @@ Rollout WithCollisions() {
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesWithCollidingParticles) {
-  const Rollout rollout = WithCollisions();
+  const TargetedRollout rollout = WithCollisions();
   ASSERT_NE(Gradient<double>(rollout).system.contact.object.friction, 0);
   ExpectGradientMatches(rollout, kContact);
 }
 
 TEST(SimulatorAdjoint, MatchesDifferencesWithAllContactsAtOnce) {
-  Rollout rollout = WithCollisions();
+  TargetedRollout rollout = WithCollisions();
   rollout.environment.ground = Eigen::Vector4d(0, 0, 1, -0.045);
   for (FrameInput& input : rollout.frames) input.geoms = BoxSphereAndCapsule();
   rollout.options.controller_velocity = false;
@@ -117,7 +117,7 @@ TEST(SimulatorAdjoint, MatchesDifferencesWithAllContactsAtOnce) {
 }
 
 TEST(SimulatorAdjoint, AddsToWhatIsThere) {
-  const Rollout rollout = WithCollisions();
+  const TargetedRollout rollout = WithCollisions();
   const Simulator<double> simulator(rollout.system, rollout.environment, rollout.options);
   Simulator<double>::Workspace workspace(simulator);
   const NodeStates<double> start = simulator.MakeState(rollout.position, rollout.velocity);
@@ -146,7 +146,7 @@ TEST(SimulatorAdjoint, AddsToWhatIsThere) {
 }
 
 TEST(SimulatorAdjoint, GivesControllersNoGradient) {
-  const Rollout rollout = RandomRollout(1, 1);
+  const TargetedRollout rollout = RandomRollout(1, 1);
   const Simulator<double> simulator(rollout.system, rollout.environment, rollout.options);
   Simulator<double>::Workspace workspace(simulator);
   const NodeStates<double> start = simulator.MakeState(rollout.position, rollout.velocity);
@@ -169,7 +169,7 @@ double RelativeError(const Eigen::MatrixBase<Derived>& rounded,
 }
 
 // A float has 6e-8; 40 sub-steps, and differences of positions, lose two digits.
-void ExpectFloatIsDouble(const Rollout& rollout, double tolerance) {
+void ExpectFloatIsDouble(const TargetedRollout& rollout, double tolerance) {
   EXPECT_LT(RelativeError(Simulate<float>(rollout).back(), Simulate<double>(rollout).back()),
             tolerance);
   const RolloutGradient rounded = Gradient<float>(rollout), exact = Gradient<double>(rollout);

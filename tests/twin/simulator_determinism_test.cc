@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/support/random_system.h"
-#include "tests/support/rollout.h"
+#include "tests/support/targeted_rollout.h"
 #include "twin/simulator.h"
 
 namespace physpring {
@@ -33,8 +33,8 @@ void ExpectSame(const SystemGradient& p, const SystemGradient& q) {
 }
 
 // All kinds of contact.
-Rollout BusyRollout() {
-  Rollout rollout = RandomRollout(3, 1);
+TargetedRollout BusyRollout() {
+  TargetedRollout rollout = RandomRollout(3, 1);
   rollout.position *= 0.6;
   rollout.velocity *= 3;
   rollout.system.contact.collision_distance = 0.03;
@@ -55,7 +55,7 @@ struct Output {
 };
 
 template <class Real>
-Output<Real> Run(const Simulator<Real>& simulator, const Rollout& rollout,
+Output<Real> Run(const Simulator<Real>& simulator, const TargetedRollout& rollout,
                  typename Simulator<Real>::Workspace* workspace) {
   Output<Real> output{{simulator.MakeState(rollout.position, rollout.velocity)},
                       {},
@@ -92,10 +92,10 @@ TYPED_TEST_SUITE(SimulatorDeterminism, Reals);
 
 TYPED_TEST(SimulatorDeterminism, AUsedWorkspaceIsAsGoodAsANewOne) {
   using Sim = Simulator<TypeParam>;
-  const Rollout rollout = BusyRollout();
+  const TargetedRollout rollout = BusyRollout();
   const Sim simulator(rollout.system, rollout.environment, rollout.options);
   typename Sim::Workspace fresh(simulator), used(simulator);
-  Rollout other = rollout;
+  TargetedRollout other = rollout;
   other.velocity *= -2;
   other.position *= 1.1;
   Run(simulator, other, &used);
@@ -104,7 +104,7 @@ TYPED_TEST(SimulatorDeterminism, AUsedWorkspaceIsAsGoodAsANewOne) {
 
 TYPED_TEST(SimulatorDeterminism, ASecondSimulatorGivesTheSame) {
   using Sim = Simulator<TypeParam>;
-  const Rollout rollout = BusyRollout();
+  const TargetedRollout rollout = BusyRollout();
   const Sim first(rollout.system, rollout.environment, rollout.options);
   const Sim second(rollout.system, rollout.environment, rollout.options);
   typename Sim::Workspace first_workspace(first), second_workspace(second);
@@ -113,7 +113,7 @@ TYPED_TEST(SimulatorDeterminism, ASecondSimulatorGivesTheSame) {
 
 TYPED_TEST(SimulatorDeterminism, EveryKernelGivesTheSame) {
   using Sim = Simulator<TypeParam>;
-  const Rollout rollout = BusyRollout();
+  const TargetedRollout rollout = BusyRollout();
   const auto run = [&](const Kernel<TypeParam>& kernel) {
     const Sim simulator(rollout.system, rollout.environment, rollout.options, kernel);
     typename Sim::Workspace workspace(simulator);
@@ -124,7 +124,7 @@ TYPED_TEST(SimulatorDeterminism, EveryKernelGivesTheSame) {
 
 TYPED_TEST(SimulatorDeterminism, ARecordedFrameIsTheSame) {
   using Sim = Simulator<TypeParam>;
-  const Rollout rollout = BusyRollout();
+  const TargetedRollout rollout = BusyRollout();
   const Sim simulator(rollout.system, rollout.environment, rollout.options);
   typename Sim::Workspace workspace(simulator);
   const NodeStates<TypeParam> start = simulator.MakeState(rollout.position, rollout.velocity);
@@ -144,7 +144,7 @@ TYPED_TEST(SimulatorDeterminism, ARecordedFrameIsTheSame) {
 
 TYPED_TEST(SimulatorDeterminism, ThreadsDoNotDisturbEachOther) {
   using Sim = Simulator<TypeParam>;
-  const Rollout rollout = BusyRollout();
+  const TargetedRollout rollout = BusyRollout();
   const Sim simulator(rollout.system, rollout.environment, rollout.options);
   typename Sim::Workspace workspace(simulator);
   const Output<TypeParam> alone = Run(simulator, rollout, &workspace);
@@ -164,11 +164,11 @@ TYPED_TEST(SimulatorDeterminism, ThreadsDoNotDisturbEachOther) {
 // that AdvanceFrame gave in the one case and that it recomputed in the other.
 TYPED_TEST(SimulatorDeterminism, TheAdjointRecomputesTheBitsOfAdvanceFrame) {
   using Sim = Simulator<TypeParam>;
-  Rollout whole = RandomRollout(1, 1);
+  TargetedRollout whole = RandomRollout(1, 1);
   whole.environment.ground = Eigen::Vector4d(0, 0, 1, -0.08);
   whole.options = {.frame_time = 0.008, .substeps = 8, .controller_velocity = true};
   whole.frames[0].controllers_end = whole.frames[0].controllers_start;  // no rounding of their way
-  Rollout parts = whole;
+  TargetedRollout parts = whole;
   parts.options = {.frame_time = 0.001, .substeps = 1, .controller_velocity = true};
   parts.frames.assign(8, whole.frames[0]);
   parts.target.assign(8, whole.target[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/rollout.h"
+#include "tests/support/targeted_rollout.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-Points LossGradient(const Rollout& rollout, std::size_t frame, const Points& position) {
+Points LossGradient(const TargetedRollout& rollout, std::size_t frame, const Points& position) {
   return rollout.weight[frame].cwiseProduct(position - rollout.target[frame]);
 }
 
@@ -23,9 +23,9 @@ void AddEntries(const std::string& name, Eigen::PlainObjectBase<Derived>* variab
 
 }  // namespace
 
-Rollout RandomRollout(int count, std::uint64_t seed) {
+TargetedRollout RandomRollout(int count, std::uint64_t seed) {
   Random random(seed + 1000);
-  Rollout rollout;
+  TargetedRollout rollout;
   rollout.system = RandomSystem(25, 2, seed);
   rollout.options = {.frame_time = 0.01, .substeps = 10, .controller_velocity = true};
   const int nodes = rollout.system.node_count();
@@ -43,7 +43,7 @@ Rollout RandomRollout(int count, std::uint64_t seed) {
 }
 
 template <class Real>
-std::vector<Points> Simulate(const Rollout& rollout) {
+std::vector<Points> Simulate(const TargetedRollout& rollout) {
   const Simulator<Real> simulator(rollout.system, rollout.environment, rollout.options);
   typename Simulator<Real>::Workspace workspace(simulator);
   NodeStates<Real> state = simulator.MakeState(rollout.position, rollout.velocity);
@@ -56,7 +56,7 @@ std::vector<Points> Simulate(const Rollout& rollout) {
 }
 
 template <class Real>
-long double Loss(const Rollout& rollout) {
+long double Loss(const TargetedRollout& rollout) {
   const std::vector<Points> positions = Simulate<Real>(rollout);
   long double loss = 0;
   for (std::size_t frame = 0; frame < positions.size(); ++frame) {
@@ -69,7 +69,7 @@ long double Loss(const Rollout& rollout) {
 }
 
 template <class Real>
-RolloutGradient Gradient(const Rollout& rollout) {
+RolloutGradient Gradient(const TargetedRollout& rollout) {
   const Simulator<Real> simulator(rollout.system, rollout.environment, rollout.options);
   typename Simulator<Real>::Workspace workspace(simulator);
   std::vector<NodeStates<Real>> states{simulator.MakeState(rollout.position, rollout.velocity)};
@@ -91,7 +91,7 @@ RolloutGradient Gradient(const Rollout& rollout) {
   return {gradient, simulator.Positions(state_bar), simulator.Velocities(state_bar)};
 }
 
-std::vector<GradientReport> CheckRollout(Rollout rollout, double step) {
+std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step) {
   const RolloutGradient gradient = Gradient<double>(rollout);
   SpringMassSystem& system = rollout.system;
   ContactCoefficients& contact = system.contact;
@@ -120,11 +120,11 @@ std::vector<GradientReport> CheckRollout(Rollout rollout, double step) {
   return reports;
 }
 
-template std::vector<Points> Simulate<float>(const Rollout&);
-template std::vector<Points> Simulate<double>(const Rollout&);
-template long double Loss<float>(const Rollout&);
-template long double Loss<double>(const Rollout&);
-template RolloutGradient Gradient<float>(const Rollout&);
-template RolloutGradient Gradient<double>(const Rollout&);
+template std::vector<Points> Simulate<float>(const TargetedRollout&);
+template std::vector<Points> Simulate<double>(const TargetedRollout&);
+template long double Loss<float>(const TargetedRollout&);
+template long double Loss<double>(const TargetedRollout&);
+template RolloutGradient Gradient<float>(const TargetedRollout&);
+template RolloutGradient Gradient<double>(const TargetedRollout&);
 
 }  // namespace physpring

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A short rollout with a loss on it, as a trainer makes one: several frames one after the other,
 // and the gradient of the loss through all of them.
-#ifndef PHYSPRING_TESTS_SUPPORT_ROLLOUT_H_
-#define PHYSPRING_TESTS_SUPPORT_ROLLOUT_H_
+#ifndef PHYSPRING_TESTS_SUPPORT_TARGETED_ROLLOUT_H_
+#define PHYSPRING_TESTS_SUPPORT_TARGETED_ROLLOUT_H_
 
 #include <vector>
 
@@ -12,7 +12,7 @@
 namespace physpring {
 
 // loss = sum over frames and nodes of weight / 2 |x - target|^2
-struct Rollout {
+struct TargetedRollout {
   SpringMassSystem system;
   Environment environment;
   SimulationOptions options;
@@ -30,22 +30,22 @@ struct RolloutGradient {
 // `count` frames of RandomSystem(25, 2, seed) (about 100 springs) in free space: the controllers
 // move along random lines, the nodes start off their rest positions with random velocities.
 // Sub-step of 1 ms.
-Rollout RandomRollout(int count, std::uint64_t seed);
+TargetedRollout RandomRollout(int count, std::uint64_t seed);
 
 // Positions after each frame, 3 x nodes.
 template <class Real>
-std::vector<Points> Simulate(const Rollout& rollout);
+std::vector<Points> Simulate(const TargetedRollout& rollout);
 
 template <class Real>
-long double Loss(const Rollout& rollout);
+long double Loss(const TargetedRollout& rollout);
 
 template <class Real>
-RolloutGradient Gradient(const Rollout& rollout);
+RolloutGradient Gradient(const TargetedRollout& rollout);
 
 // Compares the gradient of the double simulator with differences for every learnable quantity, one
 // report a quantity. `step` is relative to the quantity's usual size.
-std::vector<GradientReport> CheckRollout(Rollout rollout, double step);
+std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step);
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_TESTS_SUPPORT_ROLLOUT_H_
+#endif  // PHYSPRING_TESTS_SUPPORT_TARGETED_ROLLOUT_H_
