@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a sub-step, forward and with its gradient, by precision, kernel and size:
 //   substep_benchmark --benchmark_filter=gradient/double --benchmark_repetitions=9
-// Counter `substep`: CPU time of one. A rollout that does not fit into memory pays `forward` once
-// more for its gradient.
+// Counter `substep`: CPU time of one. `free`: without a ground, forward. A rollout that does not
+// fit into memory pays `forward` once more for its gradient.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -19,9 +19,10 @@ constexpr int kSubsteps = 100;  // a frame
 template <class Real>
 class Rope {
  public:
-  Rope(int nodes, int springs, const Kernel<Real>& kernel)
+  Rope(int nodes, int springs, bool ground, const Kernel<Real>& kernel)
       : system_(MakeRope(nodes, springs)),
-        simulator_(system_, {.ground = Eigen::Vector4d(0, 0, 1, 0)},
+        simulator_(system_,
+                   ground ? Environment{.ground = Eigen::Vector4d(0, 0, 1, 0)} : Environment(),
                    {.frame_time = kSubsteps / 20010.0, .substeps = kSubsteps}, kernel),
         workspace_(simulator_),
         gradient_(system_),
@@ -51,9 +52,9 @@ class Rope {
 };
 
 template <class Real>
-void Measure(benchmark::State& state, void (Rope<Real>::*function)(), int nodes, int springs,
-             const Kernel<Real>& kernel) {
-  Rope<Real> rope(nodes, springs, kernel);
+void Measure(benchmark::State& state, void (Rope<Real>::*function)(), bool ground, int nodes,
+             int springs, const Kernel<Real>& kernel) {
+  Rope<Real> rope(nodes, springs, ground, kernel);
   for (auto _ : state) (rope.*function)();
   state.counters["substep"] = benchmark::Counter(
       kSubsteps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -66,13 +67,14 @@ void Register(const char* precision) {
     for (const char* name : {"scalar", "avx2"}) {
       const Kernel<Real>* kernel = FindKernel<Real>(name);
       if (kernel == nullptr) continue;
-      const auto add = [&](const char* what, void (Rope<Real>::*function)()) {
+      const auto add = [&](const char* what, void (Rope<Real>::*function)(), bool ground) {
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}/{}/{}", what, precision, name, nodes, springs).c_str(),
-            Measure<Real>, function, nodes, springs, *kernel);
+            Measure<Real>, function, ground, nodes, springs, *kernel);
       };
-      add("forward", &Rope<Real>::Forward);
-      add("gradient", &Rope<Real>::Gradient);
+      add("free", &Rope<Real>::Forward, false);
+      add("forward", &Rope<Real>::Forward, true);
+      add("gradient", &Rope<Real>::Gradient, true);
     }
   }
 }

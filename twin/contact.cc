@@ -102,12 +102,12 @@ void Contact<Real>::ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs
     if (length >= distance_ || length < Real(1e-9)) continue;
     const Vector u = V((*next)[b]) - V((*next)[a]);
     if (d.dot(u) >= -Real(kApproach) * length) continue;
-    impacts->collisions.push_back({a, b, u});
+    impacts->collisions.push_back({a, b, u, Vector::Zero()});
     for (int i : {a, b}) {
       if (impacts->hits[i]++ == 0) impacts->before.push_back({i, V((*next)[i])});
     }
   }
-  for (const auto& [a, b, u] : impacts->collisions) {
+  for (const auto& [a, b, u, unused] : impacts->collisions) {
     const Vector n = (X(state[b]) - X(state[a])).normalized();
     const Vector change = (Impact(u, n, laws_.object) - u) /
                           static_cast<Real>(std::max(impacts->hits[a], impacts->hits[b]));
@@ -118,20 +118,18 @@ void Contact<Real>::ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs
 }
 
 template <class Real>
-void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, Impacts* impacts,
                                       NodeStates<Real>* state_bar,
                                       ContactGradient<Real>* gradient) const {
-  if (impacts.collisions.empty()) return;
-  const NodeStates<Real> after_bar = *state_bar;
-  for (const auto& [a, b, u] : impacts.collisions) {
+  for (auto& [a, b, u, u_bar] : impacts->collisions) {
     const Vector d = X(state[b]) - X(state[a]);
     const Real length = d.norm();
     const Vector n = d / length;
-    const Real share = 1 / static_cast<Real>(std::max(impacts.hits[a], impacts.hits[b]));
+    const Real share = 1 / static_cast<Real>(std::max(impacts->hits[a], impacts->hits[b]));
     const Vector change = share * (Impact(u, n, laws_.object) - u);
     const Real mass = mass_[a] + mass_[b];
     const Real fraction = mass_[a] / mass;
-    const Vector v_a_bar = V(after_bar[a]), v_b_bar = V(after_bar[b]);
+    const Vector v_a_bar = V((*state_bar)[a]), v_b_bar = V((*state_bar)[b]);
     // forward: velocity_a -= (1 - fraction) change, velocity_b += fraction change
     const Vector change_bar = fraction * v_b_bar - (1 - fraction) * v_a_bar;
     // forward: fraction = m_a / (m_a + m_b)
@@ -139,15 +137,19 @@ void Contact<Real>::ApplyPairsAdjoint(const NodeStates<Real>& state, const Impac
     gradient->mass[a] += fraction_bar * (1 - fraction) / mass;
     gradient->mass[b] -= fraction_bar * fraction / mass;
     // forward: change = share (Impact(u, n) - u)
-    Vector u_bar = -share * change_bar, n_bar = Vector::Zero();
+    u_bar = -share * change_bar;
+    Vector n_bar = Vector::Zero();
     ImpactAdjoint<Real>(u, n, laws_.object, share * change_bar, &u_bar, &n_bar,
                         &gradient->laws.object);
-    SetV<Real>(V((*state_bar)[b]) + u_bar, &(*state_bar)[b]);
-    SetV<Real>(V((*state_bar)[a]) - u_bar, &(*state_bar)[a]);
     // forward: n = d / |d|
     const Vector d_bar = (n_bar - n.dot(n_bar) * n) / length;
     AddX(d_bar, &(*state_bar)[b]);
     AddX<Real>(-d_bar, &(*state_bar)[a]);
+  }
+  // forward: u = v_b - v_a; not before all collisions have seen d loss / d velocity after
+  for (const auto& [a, b, u, u_bar] : impacts->collisions) {
+    SetV<Real>(V((*state_bar)[b]) + u_bar, &(*state_bar)[b]);
+    SetV<Real>(V((*state_bar)[a]) - u_bar, &(*state_bar)[a]);
   }
 }
 
@@ -287,11 +289,11 @@ void Contact<Real>::Undo(const Impacts& impacts, NodeStates<Real>* next) const {
 }
 
 template <class Real>
-void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+void Contact<Real>::ApplyAdjoint(const NodeStates<Real>& state, Impacts* impacts,
                                  NodeStates<Real>* state_bar,
                                  ContactGradient<Real>* gradient) const {
-  for (auto touch = impacts.touches.rbegin(); touch != impacts.touches.rend(); ++touch) {
-    ApplyTouchAdjoint(state, impacts, *touch, state_bar, gradient);
+  for (auto touch = impacts->touches.rbegin(); touch != impacts->touches.rend(); ++touch) {
+    ApplyTouchAdjoint(state, *impacts, *touch, state_bar, gradient);
   }
   ApplyPairsAdjoint(state, impacts, state_bar, gradient);
 }

@@ -62,8 +62,8 @@ class Contact {
 
   // Adjoint. The velocities of state_bar: in d loss / d velocity after, out before; its positions:
   // adds d loss / d position.
-  void ApplyAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
-                    NodeStates<Real>* state_bar, ContactGradient<Real>* gradient) const;
+  void ApplyAdjoint(const NodeStates<Real>& state, Impacts* impacts, NodeStates<Real>* state_bar,
+                    ContactGradient<Real>* gradient) const;
 
  private:
   // A geom where it stands in a sub-step.
@@ -85,7 +85,8 @@ class Contact {
   // One impact of two particles.
   struct Collision {
     int a, b;
-    Vector u;  // v_b - v_a before
+    Vector u;      // v_b - v_a before
+    Vector u_bar;  // d loss / d u, of the adjoint
   };
   struct Velocity {
     int node;
@@ -111,7 +112,7 @@ class Contact {
 
   void ApplyPairs(const NodeStates<Real>& state, const Pairs& pairs, NodeStates<Real>* next,
                   Impacts* impacts) const;
-  void ApplyPairsAdjoint(const NodeStates<Real>& state, const Impacts& impacts,
+  void ApplyPairsAdjoint(const NodeStates<Real>& state, Impacts* impacts,
                          NodeStates<Real>* state_bar, ContactGradient<Real>* gradient) const;
 
   int nodes_;

@@ -114,9 +114,9 @@ template <class Real>
 void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const {
   const State& state = workspace->states[substep];
   State& next = workspace->states[substep + 1];
-  const typename Contact<Real>::Impacts& impacts = workspace->impacts[substep];
+  typename Contact<Real>::Impacts& impacts = workspace->impacts[substep];
   kernel_->update_positions_adjoint(Nodes(), state_bar->data());
-  contact_.ApplyAdjoint(state, impacts, state_bar, &workspace->contact_gradient);
+  contact_.ApplyAdjoint(state, &impacts, state_bar, &workspace->contact_gradient);
   contact_.Undo(impacts, &next);
   kernel_->update_velocities_adjoint(
       Nodes(), state.data(), next.data(), state_bar->data(), workspace->force.data(),

@@ -66,7 +66,7 @@ struct Scene {
     NodeStates<double> next = state;
     Contact<double>::Impacts impacts;
     contact.Apply(state, pairs, geoms, kElapsed, kStep, &next, &impacts);
-    contact.ApplyAdjoint(state, impacts, state_bar, gradient);
+    contact.ApplyAdjoint(state, &impacts, state_bar, gradient);
   }
 };
 
