@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/eval_report.h"
 #include "cli/evaluation.h"
+#include "cli/option_values.h"
 #include "cli/picture/page.h"
 #include "trainer/parallel.h"
 #include "twin/atomic_file.h"
@@ -92,21 +92,11 @@ void AddEvalCommand(CLI::App& app) {
   command->add_option("--picture", arguments->picture, "write a page with pictures and a film")
       ->check(EndsWithHtml())
       ->type_name("FILE.html");
-  command->add_option("--precision", arguments->precision, "double or float")
-      ->check(CLI::IsMember({"double", "float"}))
-      ->capture_default_str();
-  command
-      ->add_option("--substeps", arguments->substeps,
-                   "sub-steps of a frame; auto: stable ones, no longer than in training")
-      ->transform(CLI::Transformer(std::map<std::string, int>{{"auto", 0}}))
-      ->check(CLI::Range(0, 1000000))
-      ->type_name("N|auto")
-      ->default_str("auto");
-  command
-      ->add_option("--threads", arguments->threads,
-                   "recordings at the same time; FPS are truest with 1")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  AddChoice(command, "--precision", &arguments->precision, {"double", "float"},
+            "of the simulation");
+  AddNumberOrAuto(command, "--substeps", &arguments->substeps,
+                  "sub-steps of a frame; auto: stable ones, no longer than in training");
+  AddThreads(command, &arguments->threads, "recordings at the same time; FPS are truest with 1");
   command->callback([arguments] { Run(*arguments); });
 }
 

@@ -3,14 +3,27 @@
 // stopped by signal n (after Ctrl-C 130).
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+
+namespace {
+
+// One line for a command that cannot be understood, naming the page that explains it.
+std::string DescribeBadUsage(const CLI::App* app, const CLI::Error& error) {
+  std::string command = app->get_name();
+  for (const CLI::App* subcommand : app->get_subcommands()) command += " " + subcommand->get_name();
+  return command + ": " + error.what() + " (see " + command + " --help)\n";
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);
+  app.failure_message(DescribeBadUsage);
   physpring::AddRecordCommand(app);
   physpring::AddTrainCommand(app);
   physpring::AddEvalCommand(app);

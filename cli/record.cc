@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/option_values.h"
 
 namespace physpring {
 namespace {
@@ -42,21 +43,25 @@ void AddRecordCommand(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "recording to write")
       ->required()
       ->type_name("REC.npz");
-  command->add_option("--noise", options.noise, "standard deviation of each coordinate, m")
-      ->check(CLI::Range(0.0, 1.0))
+  command->add_option("--noise", options.noise, "standard deviation of each coordinate")
+      ->check(NumberBetween(0, 1))
+      ->type_name("METRES")
       ->capture_default_str();
   command->add_option("--occlusion", options.occlusion, "fraction of points hidden in each frame")
-      ->check(CLI::Range(0.0, 0.99))
+      ->check(NumberBetween(0, 0.99))
+      ->type_name("FRACTION")
       ->capture_default_str();
-  command->add_option("--vary", options.vary, "shift keyframes by up to this, m: another motion")
-      ->check(CLI::Range(0.0, 10.0))
+  command->add_option("--vary", options.vary, "shift keyframes by up to this: another motion")
+      ->check(NumberBetween(0, 10))
+      ->type_name("METRES")
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "of noise, occlusion and variation")
-      ->capture_default_str();
-  command->add_option("--duration", options.duration, "s; default: until the last keyframe")
-      ->check(CLI::PositiveNumber);
+  AddSeed(command, &options.seed, "of noise, occlusion and variation");
+  command->add_option("--duration", options.duration, "default: until the last keyframe")
+      ->check(NumberBetween(1e-6, 1e6))
+      ->type_name("SECONDS");
   command->add_option("--fps", options.fps, "frames per second")
-      ->check(CLI::Range(0.1, 10000.0))
+      ->check(NumberBetween(0.1, 10000))
+      ->type_name("NUMBER")
       ->capture_default_str();
   command->callback([arguments] { Run(arguments->scene, arguments->output, arguments->options); });
 }

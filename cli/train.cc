@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,6 +16,7 @@
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/option_values.h"
 #include "cli/progress.h"
 #include "cli/training.h"
 #include "trainer/fit_data.h"
@@ -71,6 +71,14 @@ void OpenLog(const std::string& path, bool append) {
   }
 }
 
+// To the user and to the log.
+void Warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    fmt::print(stderr, "warning: {}\n", warning);
+    spdlog::info("warning: {}", warning);
+  }
+}
+
 void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
                  const std::string& status, double seconds) {
   const TwinLevel& level = run.twin.levels[0];
@@ -92,12 +100,7 @@ void Run(const Arguments& arguments) {
   const std::unique_ptr<Fitter> fitter = MakeFitter(data, options);
   if (arguments.resume) checkpoint.Resume(fitter.get());
   OpenLog(arguments.log, arguments.resume);
-  for (const Recording& recording : data.recordings) {
-    for (const std::string& warning : recording.warnings) {
-      fmt::print(stderr, "warning: {}\n", warning);
-      spdlog::info("warning: {}", warning);
-    }
-  }
+  for (const Recording& recording : data.recordings) Warn(recording.warnings);
 
   const TrainingRun run = RunTraining(fitter.get(), checkpoint, arguments.checkpoint_interval);
   if (!run.finished) {
@@ -123,24 +126,6 @@ CLI::Validator OneLevel() {
       "");
 }
 
-// A number from 1, or auto: 0.
-CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,
-                             const std::string& description) {
-  return command->add_option(name, *number, description)
-      ->transform(CLI::Transformer(std::map<std::string, int>{{"auto", 0}}))
-      ->check(CLI::Range(0, 1000000))
-      ->type_name("N|auto")
-      ->default_str("auto");
-}
-
-CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
-                       const std::vector<std::string>& choices, const std::string& description) {
-  return command->add_option(name, *choice, description)
-      ->check(CLI::IsMember(choices))
-      ->type_name("")
-      ->capture_default_str();
-}
-
 void AddFitOptions(CLI::App* command, Arguments* arguments) {
   TrainOptions& options = arguments->options;
   AddChoice(command, "--method", &arguments->method, {"full", "two-stage"},
@@ -153,8 +138,8 @@ void AddFitOptions(CLI::App* command, Arguments* arguments) {
       ->add_option("--neighbours", options.neighbours,
                    "springs of a particle; of several the best on held-back frames (full)")
       ->delimiter(',')
-      ->transform(CLI::Transformer(std::map<std::string, int>{{"auto", 0}}))
-      ->check(CLI::Range(0, 1000))
+      ->allow_extra_args(false)
+      ->transform(WholeNumberOrAuto(1000))
       ->type_name("N[,N...]|auto")
       ->default_str("auto");
   AddChoice(command, "--optimizer", &arguments->optimizer, {"auto", "gauss-newton", "adam"},
@@ -168,7 +153,7 @@ void AddFitOptions(CLI::App* command, Arguments* arguments) {
             "whether dashpots feel the controllers' velocity (PhysTwin: off)");
   command->add_flag("--self-collision", options.self_collision,
                     "let particles collide with each other (two-stage)");
-  command->add_option("--seed", options.seed, "of random numbers")->capture_default_str();
+  AddSeed(command, &options.seed, "of random numbers");
 }
 
 }  // namespace
@@ -187,18 +172,15 @@ void AddTrainCommand(CLI::App& app) {
       ->type_name("NAME.twin.npz");
   AddFitOptions(command, arguments.get());
   arguments->options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  command
-      ->add_option("--threads", arguments->options.threads,
-                   "at most; the result does not depend on it")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");
   CLI::Option* const resume = command->add_flag("--resume", arguments->resume,
                                                 "go on from the output file, if there is one");
   command->add_flag("--force", arguments->force, "overwrite a twin")->excludes(resume);
   command
       ->add_option("--checkpoint", arguments->checkpoint_interval,
                    "seconds between checkpoints, at least")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(NumberBetween(0, 1e6))
+      ->type_name("SECONDS")
       ->capture_default_str();
   command->add_option("--log", arguments->log, "write a line for each step")->type_name("FILE");
   command->callback([arguments] { Run(*arguments); });

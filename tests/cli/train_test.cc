@@ -238,9 +238,17 @@ TEST_F(Train, RefusesBadUsage) {
     EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
   };
   refused({"--levels", "4"}, "only level 0 can be trained so far, not 4 levels");
-  refused({"--method", "three-stage"}, "--method");
-  refused({"--epochs", "-1"}, "--epochs");
-  refused({"--neighbours", "8,many"}, "--neighbours");
+  refused({"--method", "three-stage"}, "--method: takes full or two-stage, not 'three-stage'");
+  for (const char* epochs : {"-1", "0", "2.5", "ten", "3x", ""}) {
+    refused({std::string("--epochs=") + epochs}, "--epochs");
+  }
+  refused({"--epochs", "-1"},
+          "--epochs: takes a whole number from 1 to 1000000, or auto, not '-1'");
+  refused({"--neighbours", "8,many"},
+          "--neighbours: takes a whole number from 1 to 1000, or auto, not 'many'");
+  refused({"--threads", "0"}, "--threads: takes a whole number from 1 to 1024, not '0'");
+  refused({"--seed", "-3"},
+          "--seed: takes a whole number from 0 to 18446744073709551615, not '-3'");
   refused({"--neighbours", "8", "--method", "two-stage"}, "--neighbours: is chosen by two-stage");
   refused({"--self-collision"}, "--self-collision: is of --method two-stage");
   refused({"--resume", "--force"}, "--resume excludes --force");

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the values of options may be. Each is a check for CLI::Option whose message says in plain
+// words what would be right, and which adds nothing to the help (CLI11's own show their code
+// there).
+#ifndef PHYSPRING_CLI_OPTION_VALUES_H_
+#define PHYSPRING_CLI_OPTION_VALUES_H_
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace physpring {
+
+// A finite number from `least` to `most`.
+CLI::Validator NumberBetween(double least, double most);
+
+// A whole number from `least` to `most`.
+CLI::Validator WholeNumberBetween(std::int64_t least, std::int64_t most);
+
+// A whole number from 1 to `most`, or `auto`, which becomes 0: for CLI::Option::transform.
+CLI::Validator WholeNumberOrAuto(std::int64_t most);
+
+// One of a few words.
+CLI::Validator OneOf(const std::vector<std::string>& words);
+
+// Any whole number that a seed can be.
+CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& description);
+
+// A word of a few, which the help lists: "full|two-stage".
+CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
+                       const std::vector<std::string>& choices, const std::string& description);
+
+// A whole number from 1, or auto: 0.
+CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,
+                             const std::string& description);
+
+// At most this many threads.
+CLI::Option* AddThreads(CLI::App* command, int* threads, const std::string& description);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_OPTION_VALUES_H_
