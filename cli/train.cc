@@ -110,6 +110,7 @@ void Run(const Arguments& arguments) {
                100 * fitter->Progress(), arguments.output);
     throw Interrupted{run.signal};
   }
+  Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
   const std::string fit_error =
       DescribeFitError(run.twin, data, options.single_precision, options.threads);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

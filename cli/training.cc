@@ -87,4 +87,20 @@ std::string DescribeFitError(const Twin& twin, const FitData& data, bool single_
                      fit.InMillimetres(), still.InMillimetres());
 }
 
+std::vector<std::string> WarnOfUnjoinedControllers(const Twin& twin, const std::string& recording) {
+  const SpringMassSystem& system = twin.levels[0].system;
+  const int nodes = system.node_count();
+  std::vector<std::string> warnings;
+  for (int c : system.UnjoinedControllers()) {
+    const Eigen::Vector3d place = system.position.col(nodes + c);
+    const double nearest =
+        (system.position.leftCols(nodes).colwise() - place).colwise().norm().minCoeff();
+    warnings.push_back(fmt::format(
+        "recording {}: controller {} is joined to no particle, the nearest is {:.3g} m away; it "
+        "moves nothing",
+        recording, c, nearest));
+  }
+  return warnings;
+}
+
 }  // namespace physpring

@@ -5,6 +5,7 @@
 #define PHYSPRING_CLI_TRAINING_H_
 
 #include <string>
+#include <vector>
 
 #include "cli/checkpoint.h"
 #include "trainer/fitter.h"
@@ -28,6 +29,9 @@ TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double int
 // line. Throws Error if it diverges.
 std::string DescribeFitError(const Twin& twin, const FitData& data, bool single_precision,
                              int threads);
+
+// A line for each controller that no spring of the twin joins, naming the recording.
+std::vector<std::string> WarnOfUnjoinedControllers(const Twin& twin, const std::string& recording);
 
 }  // namespace physpring
 

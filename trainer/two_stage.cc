@@ -34,6 +34,11 @@ double SumOfLosses(const SpringMassSystem& system, const Recording& recording,
   return loss;
 }
 
+bool JoinsNoController(const SpringMassSystem& system) {
+  return system.controllers > 0 &&
+         static_cast<int>(system.UnjoinedControllers().size()) == system.controllers;
+}
+
 }  // namespace
 
 TwoStageFit::TwoStageFit(FitData data, const TrainOptions& options)
@@ -42,7 +47,13 @@ TwoStageFit::TwoStageFit(FitData data, const TrainOptions& options)
       length_scale_(PhysTwinLengthScale(data_.recordings.at(0))),
       passes_(options.epochs > 0 ? options.epochs : PhysTwinPasses(data_.recordings[0])),
       search_(PhysTwinStart(), kStepSize, options.seed) {
-  SystemAt(PhysTwinStart());  // throws where the recording gives no body
+  // the widest search; throws where the recording gives no body
+  const Eigen::VectorXd widest = Eigen::VectorXd::Ones(kPhysTwinVariables);
+  if (!JoinsNoController(SystemAt(widest))) return;
+  throw Error(
+      fmt::format("recording {}: no controller is near enough to a particle to move it; PhysTwin's "
+                  "search joins them up to {:.3g} m apart, --method full at any distance",
+                  data_.recordings[0].name, FromUnitCube(widest, length_scale_).controller_radius));
 }
 
 SpringMassSystem TwoStageFit::SystemAt(const Eigen::VectorXd& point) const {
@@ -63,21 +74,23 @@ RolloutOptions TwoStageFit::RolloutOptionsFor(const SpringMassSystem& system) co
   return options;
 }
 
-// A candidate that would diverge with PhysTwin's sub-step, or diverges with ours, has failed.
+// A candidate that joins no controller, would diverge with PhysTwin's sub-step, or diverges with
+// ours, has failed.
 std::vector<double> TwoStageFit::Objectives(const std::vector<Eigen::VectorXd>& points) const {
   const int recordings = static_cast<int>(data_.recordings.size());
   const int candidates = static_cast<int>(points.size());
   std::vector<SpringMassSystem> systems(candidates);
-  std::vector<char> stable(candidates);
+  std::vector<char> possible(candidates);
   ParallelFor(candidates, options_.threads, [&](int i) {
     systems[i] = SystemAt(points[i]);
-    stable[i] =
-        options_.substeps > 0 || ComputeStabilityBound(systems[i]).timestep >= kPhysTwinSubstep;
+    possible[i] =
+        !JoinsNoController(systems[i]) &&
+        (options_.substeps > 0 || ComputeStabilityBound(systems[i]).timestep >= kPhysTwinSubstep);
   });
   std::vector<double> sums(candidates * recordings, kFailed);
   ParallelFor(candidates * recordings, options_.threads, [&](int k) {
     const int i = k / recordings;
-    if (!stable[i]) return;
+    if (!possible[i]) return;
     sums[k] =
         SumOfLosses(systems[i], data_.recordings[k % recordings], RolloutOptionsFor(systems[i]));
   });
@@ -87,7 +100,7 @@ std::vector<double> TwoStageFit::Objectives(const std::vector<Eigen::VectorXd>& 
   for (int i = 0; i < candidates; ++i) {
     double sum = 0;
     for (int j = 0; j < recordings; ++j) sum += sums[i * recordings + j];
-    objectives.push_back(stable[i] ? std::min(kFailed, sum / frames) : kFailed);
+    objectives.push_back(possible[i] ? std::min(kFailed, sum / frames) : kFailed);
   }
   return objectives;
 }

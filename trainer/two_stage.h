@@ -31,7 +31,7 @@ namespace physpring {
 
 class TwoStageFit : public Fitter {
  public:
-  // Throws Error where the recordings give no connected body.
+  // Throws Error where the recordings give no connected body, or one that no controller can move.
   TwoStageFit(FitData data, const TrainOptions& options);
 
   // As many candidates of a generation as there are threads, or one pass of the second stage.

@@ -231,6 +231,28 @@ TEST_F(Train, FailsInOneLineAndWritesNothing) {
         "the particles fall into separate objects");
 }
 
+TEST_F(Train, WarnsOfAControllerThatNoSpringJoins) {
+  Recording recording = MovingRope(8, 5);
+  recording.start.conservativeResize(3, 10);
+  recording.start.col(9) << 0, 0, 1;
+  recording.rest = recording.start;
+  for (Points& controllers : recording.controllers) {
+    controllers.conservativeResize(3, 2);
+    controllers.col(1) = recording.start.col(9);
+  }
+  WriteRecording(recording, rope_);
+  const ProgramResult result =
+      RunProgram({"train", rope_, "-o", twin_, "--method", "two-stage", "--epochs", "1"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  const std::string warning =
+      "warning: recording rope: controller 1 is joined to no particle, the nearest is 1 m away; it "
+      "moves nothing\n";
+  const auto found = result.errors.find(warning);
+  EXPECT_NE(found, std::string::npos) << result.errors;
+  EXPECT_EQ(result.errors.find(": controller ", found + warning.size()), std::string::npos);
+  EXPECT_EQ(ReadTwin(twin_).levels[0].system.UnjoinedControllers(), std::vector<int>{1});
+}
+
 TEST_F(Train, RefusesBadUsage) {
   const auto refused = [&](const Words& more, const std::string& part) {
     const ProgramResult result = RunProgram(Words{"train", rope_, "-o", twin_} + more);

@@ -143,6 +143,20 @@ TEST(TwoStageFit, SaysThatTooFewSubstepsWereGiven) {
   }
 }
 
+TEST(TwoStageFit, RefusesControllersThatAreAllOutOfReach) {
+  FitData data = MovedByAModel(3);
+  Recording& recording = data.recordings[0];
+  recording.rest.col(8) = recording.rest.col(0) + Eigen::Vector3d(0, 0, 1);
+  try {
+    TwoStageFit fit(data, Options());
+    ADD_FAILURE() << "a controller was joined over 1 m";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "recording rope: no controller is near enough to a particle to move it; "
+                 "PhysTwin's search joins them up to 0.166 m apart, --method full at any distance");
+  }
+}
+
 TEST(TwoStageFit, RefusesTheStateOfAnotherFit) {
   TwoStageFit fit(MovedByAModel(3), Options());
   StateArrays state = fit.Save();
