@@ -7,16 +7,32 @@
 
 namespace physpring {
 
+namespace {
+
 using Vector = Eigen::Vector3d;
 
+Level ReadLevelWithJoinedPairs(const mjModel* model, int instance) {
+  const Attributes attributes(model, instance);
+  Level level = ReadLevel(model, instance, attributes);
+  ReadJoinedPairs(attributes, &level);
+  return level;
+}
+
+}  // namespace
+
 LevelContactModel::LevelContactModel(const mjModel* model, int instance)
-    : level(ReadLevel(model, instance, Attributes(model, instance))),
+    : level(ReadLevelWithJoinedPairs(model, instance)),
       particles(level.system, {Vector::Zero(), {}}) {}
 
 const std::vector<const char*>& LevelContact::AttributeNames() {
-  static const std::vector<const char*> names = {
-      "nodes",           "restitution",        "friction",      "object_restitution",
-      "object_friction", "collision_distance", "contact_radius"};
+  static const std::vector<const char*> names = {"nodes",
+                                                 "springs",
+                                                 "restitution",
+                                                 "friction",
+                                                 "object_restitution",
+                                                 "object_friction",
+                                                 "collision_distance",
+                                                 "contact_radius"};
   return names;
 }
 

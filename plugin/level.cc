@@ -145,18 +145,33 @@ Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes
   return level;
 }
 
-void ReadSprings(const Attributes& attributes, Level* level) {
-  CheckCount(attributes, "controllers", level->bodies.controllers.size());
+void ReadJoinedPairs(const Attributes& attributes, Level* level) {
   SpringMassSystem& system = level->system;
   const std::vector<int> ends = attributes.Integers("springs");
-  if (ends.empty() || ends.size() % 2 != 0) {
+  if (ends.size() % 2 != 0) {
     throw Error(fmt::format("{}: attribute 'springs' has {} numbers, expected two for each spring",
                             attributes.where(), ends.size()));
   }
   for (std::size_t e = 0; e < ends.size(); e += 2) system.springs.push_back({ends[e], ends[e + 1]});
-  system.stiffness = attributes.Each("stiffness", system.spring_count());
-  system.rest_length = attributes.Each("rest_length", system.spring_count());
-  system.dashpot = attributes.Each("dashpot", system.spring_count());
+  const int count = system.spring_count();
+  system.stiffness.setZero(count);
+  system.rest_length.setOnes(count);
+  system.dashpot.setZero(count);
+  system.Validate(attributes.where());
+}
+
+void ReadSprings(const Attributes& attributes, Level* level) {
+  CheckCount(attributes, "controllers", level->bodies.controllers.size());
+  if (!attributes.Has("springs")) {
+    throw Error(fmt::format("{}: attribute 'springs' is missing, expected two numbers for each",
+                            attributes.where()));
+  }
+  ReadJoinedPairs(attributes, level);
+  SpringMassSystem& system = level->system;
+  const int count = system.spring_count();
+  system.stiffness = attributes.Each("stiffness", count);
+  system.rest_length = attributes.Each("rest_length", count);
+  system.dashpot = attributes.Each("dashpot", count);
   system.drag = attributes.Number("drag", 0);
   system.Validate(attributes.where());
 }

@@ -39,6 +39,10 @@ struct Level {
 // the attributes. Throws Error, one line that names the instance and body or attribute and value.
 Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes);
 
+// Reads which nodes springs join into `level`, as springs that do nothing: such nodes never
+// collide.
+void ReadJoinedPairs(const Attributes& attributes, Level* level);
+
 // Reads springs, their parameters and drag into `level`.
 void ReadSprings(const Attributes& attributes, Level* level);
 

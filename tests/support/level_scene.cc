@@ -63,9 +63,10 @@ void Set(const std::string& key, const std::string& value, Config* config) {
 
 Config Attributes(const SpringMassSystem& system, const LevelSceneOptions& options) {
   Config config;
+  std::string springs;
+  for (const auto& [a, b] : system.springs) springs += fmt::format("{} {} ", a, b);
+  if (options.contact) config = {{"springs", springs}};
   if (options.plugin_springs) {
-    std::string springs;
-    for (const auto& [a, b] : system.springs) springs += fmt::format("{} {} ", a, b);
     config = {{"springs", springs},
               {"stiffness", Join(system.stiffness)},
               {"rest_length", Join(system.rest_length)},
