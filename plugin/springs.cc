@@ -71,7 +71,6 @@ Springs::Springs(const mjModel* model, int instance)
       state_(springs_->springs.spare_node + 1),
       next_(state_.size()),
       force_(state_.size()),
-      velocity_sum_(nodes()),
       ways_(springs_->level.bodies.controllers.size()),
       lag_(3 * static_cast<std::size_t>(nodes())) {}
 
@@ -150,9 +149,6 @@ void Springs::Substep(double elapsed, double h, const Contact<double>::Pairs& pa
   if (!pairs.empty()) springs_->particles.Apply(state_, pairs, {}, elapsed, h, &next_, &impacts_);
   surfaces_.Apply(state_, h, &next_);
   kernel.update_positions(view_, state_.data(), next_.data());
-  for (int i = 0; i < nodes(); ++i) {
-    for (int j = 0; j < 4; ++j) velocity_sum_[i].f[j] += next_[i].v[j];
-  }
   for (std::size_t c = 0; c < ways_.size(); ++c) {
     ways_[c].impulse += h * Eigen::Map<const Vector>(force_[nodes() + c].f);
   }
@@ -173,7 +169,6 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   if (!IsFinite()) return;  // MuJoCo warns
   surfaces_.Collect(model, data, state_);
   const Contact<double>::Pairs pairs = springs_->particles.FindPairs(state_, time);
-  std::fill(velocity_sum_.begin(), velocity_sum_.end(), NodeForce<double>{});
   for (int i = 0; i < substeps; ++i) Substep(i * h, h, pairs);
   WriteForces(model, step, substeps, data);
 }
@@ -181,8 +176,12 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
 void Springs::WriteForces(const mjModel* model, const EulerStep& step, int substeps, mjData* data) {
   const Level& level = springs_->level;
   for (int i = 0; i < nodes(); ++i) {
-    const Vector mean = Eigen::Map<const Vector>(velocity_sum_[i].f) / substeps;
-    Eigen::Map<Vector>(lag_.data() + 3 * i) = Eigen::Map<const Vector>(state_[i].v) - mean;
+    const Eigen::Map<const Vector> x(state_[i].x), v(state_[i].v);
+    Vector mean = v;
+    if (substeps > 1) {
+      mean = (x - Eigen::Map<const Vector>(data->xpos + 3 * level.bodies.nodes[i])) / step.time();
+    }
+    Eigen::Map<Vector>(lag_.data() + 3 * i) = v - mean;
     step.AddForceTo(mean, level.dofs[i], level.joints[i], level.system.mass[i], data);
   }
   surfaces_.AddReactions(model, data, step.time());

@@ -77,7 +77,7 @@ class Springs {
   NodeView<double> view_{};
   std::vector<double> h_over_mass_;
   NodeStates<double> state_, next_;
-  NodeForces<double> force_, velocity_sum_;
+  NodeForces<double> force_;
   Contact<double>::Impacts impacts_;
   std::vector<Way> ways_;
   std::vector<double> lag_;
