@@ -63,7 +63,8 @@ void Measure(benchmark::State& state, void (Rope<Real>::*function)(), bool groun
 template <class Real>
 void Register(const char* precision) {
   constexpr int kSizes[][2] = {{45, 250}, {838, 7344}, {1050, 10099}, {1243, 13129}, {2000, 30000}};
-  for (const auto& [nodes, springs] : kSizes) {
+  for (const auto& size : kSizes) {
+    const int nodes = size[0], springs = size[1];
     for (const char* name : {"scalar", "avx2"}) {
       const Kernel<Real>* kernel = FindKernel<Real>(name);
       if (kernel == nullptr) continue;
