@@ -77,8 +77,10 @@ void Register() {
 
 mjPLUGIN_LIB_INIT(physpring) {
   if (mj_version() != mjVERSION_HEADER) {
-    mju_warning("physpring: this plugin library is for MuJoCo %d, expected %d: not registered",
-                mjVERSION_HEADER, mj_version());
+    mju_warning(
+        "physpring: this plugin library is for MuJoCo %d, not %d: its plugins are not "
+        "registered",
+        mjVERSION_HEADER, mj_version());
     return;
   }
   Register<Springs>();

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""loading_test.py LIBRARY PACKAGE: the three ways in which Python loads the plugin library.
+
+Makes a virtual environment with the mujoco-core wheel; exits with 77 (skipped) where that cannot
+be had.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+MODEL = """<mujoco>
+  <extension><plugin plugin="physpring.springs"><instance name="pair">
+    <config key="springs" value="0 1"/><config key="stiffness" value="10"/>
+    <config key="rest_length" value="0.1"/><config key="dashpot" value="0.1"/>
+  </instance></plugin></extension>
+  <worldbody><body name="pair"><plugin instance="pair"/>NODES</body></worldbody>
+</mujoco>"""
+NODE = """<body pos="{} 0 0"><inertial pos="0 0 0" mass="0.1" diaginertia="1 1 1"/>
+  <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/>
+  <joint type="slide" axis="0 0 1"/></body>"""
+
+# Two nodes 0.2 m apart pull each other; one libmujoco is loaded.
+PROGRAM = """
+import mujoco
+{}
+model = mujoco.MjModel.from_xml_string({!r})
+data = mujoco.MjData(model)
+mujoco.mj_step(model, data)
+assert data.qvel[0] > 0 > data.qvel[3], data.qvel
+with open('/proc/self/maps') as maps:
+    libraries = {{line.split()[-1] for line in maps if 'libmujoco' in line}}
+assert len(libraries) == 1, libraries
+"""
+
+
+def run(*command):
+    subprocess.run(command, check=True, stdin=subprocess.DEVNULL)
+
+
+def expect_step(python, load=''):
+    model = MODEL.replace('NODES', NODE.format(0) + NODE.format(0.2))
+    run(python, '-c', PROGRAM.format(load, model))
+
+
+def main(library, package):
+    with tempfile.TemporaryDirectory() as folder:
+        python = os.path.join(folder, 'venv', 'bin', 'python')
+        try:
+            run(sys.executable, '-m', 'venv', os.path.join(folder, 'venv'))
+            run(python, '-m', 'pip', 'install', '-q', 'mujoco-core==4.0.0', 'setuptools', 'wheel')
+        except subprocess.CalledProcessError:
+            print('skipped: python3-venv or the mujoco-core wheel is out of reach')
+            return 77
+
+        expect_step(python, f'mujoco.mj_loadPluginLibrary({library!r})')
+
+        where = subprocess.run([python, '-c', 'import mujoco; print(mujoco.PLUGINS_DIR)'],
+                               check=True, capture_output=True, text=True).stdout.strip()
+        dropped = shutil.copy(library, where)
+        expect_step(python)
+        os.remove(dropped)
+
+        copy = shutil.copytree(package, os.path.join(folder, 'package'))
+        shutil.copy(library, os.path.join(copy, 'physpring_mujoco'))
+        run(python, '-m', 'pip', 'install', '-q', '--no-build-isolation', '--no-deps', copy)
+        expect_step(python)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(*sys.argv[1:]))
