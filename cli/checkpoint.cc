@@ -32,7 +32,9 @@ std::string OptionsJson(const TrainOptions& options) {
   json["epochs"] = NumberOrAuto(options.epochs);
   json["substeps"] = NumberOrAuto(options.substeps);
   json["precision"] = options.single_precision ? "float" : "double";
-  json["controller_velocity"] = options.controller_velocity ? "on" : "off";
+  json["controller_velocity"] = !options.controller_velocity   ? "auto"
+                                : *options.controller_velocity ? "on"
+                                                               : "off";
   json["self_collision"] = options.self_collision ? "on" : "off";
   return json.dump();
 }

@@ -29,7 +29,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> recordings;
   std::string output, log;
-  std::string method = "full", optimizer = "auto", precision = "double", velocity = "on";
+  std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
   TrainOptions options;  // without what is a word above
   bool resume = false, force = false;
   double checkpoint_interval = 10;  // s
@@ -44,7 +44,7 @@ TrainOptions OptionsOf(const Arguments& arguments) {
                       : arguments.optimizer == "adam" ? Optimizer::kAdam
                                                       : Optimizer::kGaussNewton;
   options.single_precision = arguments.precision == "float";
-  options.controller_velocity = arguments.velocity == "on";
+  if (arguments.velocity != "auto") options.controller_velocity = arguments.velocity == "on";
   if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
 
   const auto expect = [](bool right, const char* flag, const char* what) {
@@ -150,8 +150,9 @@ void AddFitOptions(CLI::App* command, Arguments* arguments) {
                   "sub-steps of a frame; auto: as many as are stable");
   AddChoice(command, "--precision", &arguments->precision, {"double", "float"},
             "of the simulation");
-  AddChoice(command, "--controller-velocity", &arguments->velocity, {"on", "off"},
-            "whether dashpots feel the controllers' velocity (PhysTwin: off)");
+  AddChoice(command, "--controller-velocity", &arguments->velocity, {"auto", "on", "off"},
+            "whether dashpots feel the controllers' velocity; auto: whatever "
+            "predicts better (full), no (two-stage)");
   command->add_flag("--self-collision", options.self_collision,
                     "let particles collide with each other (two-stage)");
   AddSeed(command, &options.seed, "of random numbers");

@@ -34,7 +34,7 @@ GaussNewtonState GaussNewtonStep(LeastSquares* problem, const GaussNewtonState& 
   Eigen::VectorXd residual = -gradient;
   Eigen::VectorXd z = inverse.cwiseProduct(residual), p = z;
   double rz = residual.dot(z);
-  const double target = 1e-8 * rz;
+  const double target = 1e-4 * rz;
   for (int i = 0; i < options.conjugate_gradient_steps && rz > target; ++i) {
     const Eigen::VectorXd ap =
         problem->JacobianTransposedTimes(problem->JacobianTimes(p)) / variance +

@@ -32,7 +32,7 @@ std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
     if (i > 0 && length[sorted[i]] > kJump * length[sorted[i - 1]]) ++last;
     length_class[sorted[i]] = last;
   }
-  if (last >= kMostClasses || last == 0) {
+  if (last >= kMostClasses) {
     for (int i = 0; i < springs; ++i) {
       length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * kEqualClasses / springs);
     }
@@ -48,7 +48,8 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       springs_(base.spring_count()),
       length_class_(LengthClasses(base.rest_length)),
       classes_(options.contact ? kFriction + 1 : kDrag + 1),
-      size_(classes_ + 1 + *std::max_element(length_class_.begin(), length_class_.end())) {
+      class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
+      size_(classes_ + 2 * class_count_) {
   const auto add = [this](bool wanted, int* offset) {
     if (!wanted) return;
     *offset = size_;
@@ -81,7 +82,8 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
     const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
     system.stiffness[e] *= std::exp(values[hand ? kControllerStiffness : kStiffness] +
                                     values[ClassStiffness(e)] + own_stiffness);
-    system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] + own_dashpot);
+    system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
+                                  values[ClassDashpot(e)] + own_dashpot);
     if (rest_length_ >= 0) system.rest_length[e] *= std::exp(values[rest_length_ + e]);
   }
   system.drag *= std::exp(values[kDrag]);
@@ -105,6 +107,7 @@ Eigen::VectorXd Parameters::Adjoint(const SpringMassSystem& system,
     bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
     bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;
     bar[ClassStiffness(e)] += stiffness_bar;
+    bar[ClassDashpot(e)] += dashpot_bar;
     if (stiffness_ >= 0) bar[stiffness_ + e] = stiffness_bar;
     if (dashpot_ >= 0) bar[dashpot_ + e] = dashpot_bar;
     if (rest_length_ >= 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What training moves: an unconstrained vector, and the map from it to a spring-mass system.
 //   stiffness_e   = base_e exp(global + class(e) + own_e)     global: apart for controller springs
-//   dashpot_e     = base_e exp(global + own_e)
+//   dashpot_e     = base_e exp(global + class(e) + own_e)
 //   rest_length_e = base_e exp(own_e)
 //   drag          = base exp(.)
 //   restitution   = 1 / (1 + exp(-.)),  friction = 2 / (1 + exp(-.))
@@ -34,6 +34,8 @@ class Parameters {
   // What each entry is: 0 global, 1 own stiffness, 2 own dashpot, 3 own rest length.
   enum class Kind { kGlobal, kStiffness, kDashpot, kRestLength };
   Kind kind(int i) const;
+  // The entry of the ground's friction; -1: none.
+  int friction() const { return options_.contact ? kFriction : -1; }
 
   SpringMassSystem Apply(const Eigen::VectorXd& values) const;
 
@@ -43,12 +45,14 @@ class Parameters {
  private:
   bool IsControllerSpring(int e) const;
   int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
+  int ClassDashpot(int e) const { return classes_ + class_count_ + length_class_[e]; }
 
   SpringMassSystem base_;
   ParameterOptions options_;
   int springs_;
   std::vector<int> length_class_;                         // of each spring
-  int classes_;                                           // offset of the classes' stiffness
+  int classes_;                                           // offset of the classes' stiffness ...
+  int class_count_;                                       // ... and dashpot after it
   int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
   int size_;
   // offsets of the global parts; restitution and friction only where wanted

@@ -3,6 +3,7 @@
 #define PHYSPRING_TRAINER_TRAIN_OPTIONS_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,9 @@ struct TrainOptions {
   int epochs = 0;               // of the last stage; 0: the method's default
   int substeps = 0;             // a frame; 0: from the stability bound
   bool single_precision = false;
-  bool controller_velocity = true;  // dashpots feel the controllers' velocity
+  // Whether dashpots feel the controllers' velocity; empty: whatever predicts better (full), no
+  // (two-stage, as PhysTwin).
+  std::optional<bool> controller_velocity;
   bool self_collision = false;      // particles collide with each other (two-stage only)
   int threads = 1;
   std::uint64_t seed = 0;

@@ -69,7 +69,7 @@ int TwoStageFit::Substeps(const SpringMassSystem& system) const {
 RolloutOptions TwoStageFit::RolloutOptionsFor(const SpringMassSystem& system) const {
   RolloutOptions options;
   options.single_precision = options_.single_precision;
-  options.controller_velocity = options_.controller_velocity;
+  options.controller_velocity = options_.controller_velocity.value_or(false);
   options.substeps = Substeps(system);
   return options;
 }
@@ -227,7 +227,7 @@ Twin TwoStageFit::Result() const {
   twin.points = recording.point_count();
   twin.interior = recording.interior_count();
   twin.order = recording.order;
-  twin.controller_velocity = options_.controller_velocity;
+  twin.controller_velocity = options_.controller_velocity.value_or(false);
   twin.fps = recording.fps;
   twin.gravity = recording.gravity;
   twin.seed = options_.seed;

@@ -31,15 +31,15 @@ Points AlongRod(const Eigen::VectorXd& order) {
 }
 
 // Joins every column of `from` (index offset + column) to its nearest columns of `nodes`.
-void JoinNearest(const Points& nodes, const Points& from, int offset, double radius, int neighbours,
-                 Springs* springs) {
+void JoinNearest(const Points& nodes, const Points& from, int offset, double radius, int least,
+                 int most, Springs* springs) {
   const NeighbourSearch search(nodes);
   for (int i = 0; i < from.cols(); ++i) {
     int joined = 0;
     // one more, because a node finds itself first
-    for (const Neighbour& near : search.Nearest(from.col(i), neighbours + 1)) {
+    for (const Neighbour& near : search.Nearest(from.col(i), most + 1)) {
       if (near.index == i + offset) continue;
-      if (near.distance >= radius || joined == neighbours) break;
+      if (joined == most || (joined >= least && near.distance >= radius)) break;
       Join(i + offset, near.index, springs);
       ++joined;
     }
@@ -156,13 +156,14 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
   if (rod) {
     JoinAlongRod(order, nodes, std::max(1, options.max_neighbours / 2), &springs);
   } else {
-    JoinNearest(free, free, 0, options.radius, options.max_neighbours, &springs);
+    JoinNearest(free, free, 0, options.radius, options.min_neighbours, options.max_neighbours,
+                &springs);
   }
   JoinGroups(free, widest, where, &springs);
   const Points hands = searched.rightCols(controllers);
   CheckControllers(free, hands, where);
-  JoinNearest(free, hands, nodes, options.controller_radius, options.controller_max_neighbours,
-              &springs);
+  JoinNearest(free, hands, nodes, options.controller_radius, options.min_neighbours,
+              options.controller_max_neighbours, &springs);
   if (springs.empty()) {
     throw Error(
         fmt::format("{}: no controller is joined to the particle; the search radius for "

@@ -3,7 +3,8 @@
 //
 // Free nodes: PhysTwin's hybrid search (the nearest max_neighbours within a radius), which with an
 // infinite radius is k nearest neighbours; for rods, the nearest along the arc length. Controllers
-// are joined to their nearest free nodes in the same way, never to each other.
+// are joined to their nearest free nodes in the same way, never to each other. Where the radius
+// holds fewer than min_neighbours, that many nearest are taken.
 #ifndef PHYSPRING_TWIN_TOPOLOGY_H_
 #define PHYSPRING_TWIN_TOPOLOGY_H_
 
@@ -21,6 +22,7 @@ struct TopologyOptions {
   int max_neighbours = 12;                                  // of a node, itself not counted
   double controller_radius = std::numeric_limits<double>::infinity();  // m
   int controller_max_neighbours = 12;                                  // of a controller
+  int min_neighbours = 0;  // of a node or a controller, however far they are
 };
 
 // Springs (a, b), a < b, sorted. `position` (3 x (nodes + controllers), m, finite) holds the

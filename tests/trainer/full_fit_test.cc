@@ -133,7 +133,7 @@ TEST(FullFit, OptimizerIsTheOneAskedFor) {
 
 TEST(FullFit, SaysThatTooFewSubstepsWereGiven) {
   FitData data = Swung();
-  data.recordings[0] = SwungRope(kParticles, 60);
+  data.recordings[0] = SwungRope(kParticles, 400);
   TrainOptions options = Options();
   options.substeps = 1;
   FullFit fit(data, options);
@@ -150,10 +150,10 @@ TEST(FullFit, SaysThatTooFewSubstepsWereGiven) {
 TEST(FullFit, RefusesTheStateOfAnotherFit) {
   FullFit fit(Swung(), Options());
   StateArrays state = fit.Save();
-  state.erase("train/best_x");
+  state.erase("train/factors");
   EXPECT_THROW(fit.Load(state), Error);
   state = fit.Save();
-  state["train/score"] = StoreVector(Eigen::Vector3d::Zero());
+  state["train/contenders"] = StoreVector(Eigen::Vector3d::Zero());
   EXPECT_THROW(fit.Load(state), Error);
 }
 

@@ -48,7 +48,7 @@ long double LinearLoss(const SystemGradient& weights, const SpringMassSystem& sy
 }
 
 // The number of classes, from the number of values that the common factors alone have.
-int Classes(const SpringMassSystem& base) { return Parameters(base, kCommon).size() - 5; }
+int Classes(const SpringMassSystem& base) { return (Parameters(base, kCommon).size() - 5) / 2; }
 
 // A chain along x with springs of these lengths.
 SpringMassSystem Chain(const std::vector<double>& lengths) {
@@ -104,7 +104,7 @@ TEST(Parameters, EveryEntryHasItsKind) {
   const Parameters parameters(base, kAll);
   const int springs = base.spring_count();
   const int globals = parameters.size() - 3 * springs;
-  EXPECT_EQ(globals, 7 + Classes(base));
+  EXPECT_EQ(globals, 7 + 2 * Classes(base));
   using Kind = Parameters::Kind;
   EXPECT_EQ(parameters.kind(0), Kind::kGlobal);
   EXPECT_EQ(parameters.kind(globals - 1), Kind::kGlobal);

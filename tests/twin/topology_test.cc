@@ -51,6 +51,19 @@ bool Connected(int nodes, const Springs& springs) {
   return std::count(group.begin(), group.end(), 0) == nodes;
 }
 
+TEST(Topology, TakesTheNearestWhereTheRadiusHoldsTooFew) {
+  const Points x = Random(4).Box(200, 0.5);
+  TopologyOptions options;
+  options.radius = 0.05;  // few or none
+  options.max_neighbours = 20;
+  options.min_neighbours = 5;
+  std::set<std::array<int, 2>> expected;
+  JoinAll(x, Range(0, 200), Range(0, 200), 0.05, 20, &expected);
+  JoinAll(x, Range(0, 200), Range(0, 200), 10, 5, &expected);
+  EXPECT_EQ(BuildSprings(x, 0, kNoOrder, options, "test"),
+            Springs(expected.begin(), expected.end()));
+}
+
 TEST(Topology, HybridSearchIsThatOfAFullSearch) {
   const Points x = Random(1).Box(300, 0.5);
   TopologyOptions options;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/fit_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "trainer/spring_radius.h"
+#include "trainer/start_system.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kMostSubsteps = 10000;  // a second
+constexpr int kFewestNeighbours = 6;     // of a particle or controller that has few within reach
+constexpr int kMostPerWanted = 4;        // neighbours, at most this many times those of inner ones
+
+// Standard deviations of the prior on the springs' own parts.
+constexpr double kOwnStiffness = 0.5, kOwnDashpot = 0.5, kOwnRestLength = 0.01;
+
+// What one entry of x is expected to move by, and how strongly it acts beside a log-stiffness.
+struct EntryScale {
+  double deviation, scale;
+};
+
+EntryScale ScaleOf(Parameters::Kind kind) {
+  switch (kind) {
+    case Parameters::Kind::kGlobal:
+      return {3, 30};
+    case Parameters::Kind::kStiffness:
+      return {kOwnStiffness, 1};
+    case Parameters::Kind::kDashpot:
+      return {kOwnDashpot, 1};
+    case Parameters::Kind::kRestLength:
+      return {kOwnRestLength, 100};
+  }
+  return {};
+}
+
+std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions& options) {
+  std::vector<int> counts = options.neighbours;
+  if (counts.empty()) {
+    counts =
+        recording.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{10, 18, 28, 40};
+  }
+  // more neighbours than there are particles are all the same
+  const int most = std::max(1, recording.particle_count() - 1);
+  for (int& count : counts) count = std::min(count, most);
+  std::sort(counts.begin(), counts.end());
+  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+  return counts;
+}
+
+}  // namespace
+
+std::string Candidate::Label() const {
+  return fmt::format("{} neighbours{}", neighbours,
+                     controller_velocity ? "" : ", controllers without velocity");
+}
+
+std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions& options) {
+  const Points particles = recording.rest.leftCols(recording.particle_count());
+  std::vector<bool> velocities = {true, false};
+  if (options.controller_velocity) velocities = {*options.controller_velocity};
+  if (recording.controller_count() == 0) velocities.resize(1);
+  std::vector<Candidate> candidates;
+  double last_radius = 0;
+  for (int count : NeighbourCounts(recording, options)) {
+    const bool rod = recording.order.size() > 0 || particles.cols() < 2;
+    const double radius = rod ? 0 : SpringRadius(particles, count);
+    if (!rod && radius < 1.02 * last_radius) continue;  // the same shells again
+    last_radius = radius;
+    for (bool velocity : velocities) candidates.push_back({count, radius, velocity});
+  }
+  return candidates;
+}
+
+SpringMassSystem StartSystem(const Recording& recording, const Candidate& candidate,
+                             double start_substeps) {
+  TopologyOptions topology;
+  topology.max_neighbours = topology.controller_max_neighbours = candidate.neighbours;
+  if (candidate.radius > 0) {
+    topology.radius = topology.controller_radius = candidate.radius;
+    topology.min_neighbours = std::min(kFewestNeighbours, candidate.neighbours);
+    topology.max_neighbours *= kMostPerWanted;
+    topology.controller_max_neighbours *= kMostPerWanted;
+  }
+  SpringMassSystem system = MakeStartSystem(recording, topology);
+  ScaleToSubsteps(1 / recording.fps, start_substeps, kFitSafety, &system);
+  return system;
+}
+
+Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording) {
+  ParameterOptions options;
+  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = false;
+  options.contact = recording.ground.has_value();
+  return {base, options};
+}
+
+Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording) {
+  ParameterOptions options;
+  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = true;
+  options.contact = recording.ground.has_value();
+  return {base, options};
+}
+
+GaussNewtonOptions SpringPrior(const Parameters& parameters) {
+  GaussNewtonOptions options;
+  options.conjugate_gradient_steps = 50;
+  options.precision.resize(parameters.size());
+  options.scale.resize(parameters.size());
+  for (int i = 0; i < parameters.size(); ++i) {
+    const EntryScale entry = ScaleOf(parameters.kind(i));
+    options.precision[i] = 1 / (entry.deviation * entry.deviation);
+    options.scale[i] = entry.scale;
+  }
+  return options;
+}
+
+TrackProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
+                                    const TrainOptions& options) {
+  TrackProblem::Options problem;
+  problem.rollout.single_precision = options.single_precision;
+  problem.rollout.controller_velocity = candidate.controller_velocity;
+  problem.rollout.substeps = options.substeps;
+  problem.safety = kFitSafety;
+  problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / recording.fps));
+  // contacts make residuals jump: differences are then taken over longer steps
+  problem.difference = recording.ground ? 1e-3 : 1e-5;
+  problem.threads = options.threads;
+  return problem;
+}
+
+}  // namespace physpring

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The models that the full fit chooses from, and how one of them is set up: its start system, what
+// is fitted, and the problem of following the recordings.
+#ifndef PHYSPRING_TRAINER_FIT_MODEL_H_
+#define PHYSPRING_TRAINER_FIT_MODEL_H_
+
+#include <string>
+#include <vector>
+
+#include "trainer/fitter.h"
+#include "trainer/gauss_newton.h"
+#include "trainer/parameters.h"
+#include "trainer/track_problem.h"
+#include "trainer/train_options.h"
+
+namespace physpring {
+
+constexpr double kFitSafety = 0.7;  // of the sub-step
+
+// One model: which particles are joined, and whether dashpots feel the controllers' velocity.
+struct Candidate {
+  int neighbours = 0;  // of an inner particle, about
+  double radius = 0;   // m, that gives them (not used along rods)
+  bool controller_velocity = true;
+
+  std::string Label() const;
+};
+
+// What the options leave open, in all combinations, few neighbours first. Never empty.
+std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions& options);
+
+// Over-damped, and as soft as `start_substeps` sub-steps a frame allow. Throws Error where the
+// recording gives no body.
+SpringMassSystem StartSystem(const Recording& recording, const Candidate& candidate,
+                             double start_substeps);
+
+// The factors that all springs share (parameters.h), those of the ground where there is one.
+Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording);
+
+// The same factors and every spring's own stiffness, dashpot and rest length, and their prior.
+Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording);
+GaussNewtonOptions SpringPrior(const Parameters& parameters);
+
+// No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);
+// for common factors half of that, so that single springs find room.
+TrackProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
+                                    const TrainOptions& options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_FIT_MODEL_H_

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The choice of a model (fit_model.h) and of the start values of its common factors, on held-back
+// frames. In three rounds:
+//   starts   each candidate's factors are fitted to the first part of the frames, from the best of
+//            a few start stiffnesses and frictions, and judged by the frames after it
+//   factors  each neighbour count, with the better of its treatments of controllers, is fitted to
+//            all frames but the held-back ones, which judge it
+//   springs  the two best are fitted a few steps further, spring by spring, and judged again
+#ifndef PHYSPRING_TRAINER_MODEL_CHOICE_H_
+#define PHYSPRING_TRAINER_MODEL_CHOICE_H_
+
+#include <string>
+#include <vector>
+
+#include "trainer/fit_model.h"
+#include "trainer/held_back.h"
+#include "trainer/levenberg_marquardt.h"
+#include "trainer/state_arrays.h"
+
+namespace physpring {
+
+// A model with values of its common factors.
+struct ChosenModel {
+  Candidate candidate;
+  double start_substeps = 0;
+  Eigen::VectorXd factors;
+
+  SpringMassSystem System(const Recording& recording) const;
+};
+
+// One step of Levenberg-Marquardt on common factors.
+LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
+                                    const TrainOptions& options, double damping);
+
+class ModelChoice {
+ public:
+  // Keeps references to `data` and `options`.
+  ModelChoice(const FitData& data, const TrainOptions& options);
+
+  // One step of an optimiser. False when the choice is made.
+  // Throws Error if the motion diverges with the start values of every candidate.
+  bool Step();
+  double Progress() const;
+  const std::string& status() const { return status_; }
+
+  // The best model so far (the first candidate's softest start before there is any).
+  ChosenModel Best() const;
+
+  void Save(StateArrays* arrays) const;
+  void Load(const StateArrays& arrays);
+
+ private:
+  // A candidate on its way through the rounds.
+  struct Contender {
+    ChosenModel model;
+    double score = 0;  // infinity where there is none yet
+  };
+
+  const Recording& first() const { return data_.recordings[0]; }
+  Contender& Current() { return contenders_[round_order_[turn_]]; }
+  void StepCommonFactors();
+  void StepSprings();
+  void FinishContender(const SpringMassSystem& system);
+  void BeginRound();
+  void SearchStart(ChosenModel* model) const;
+  double TrackError(const SpringMassSystem& system, const Candidate& candidate) const;
+  std::vector<ScoredFrames> JudgedBy() const;
+
+  const FitData& data_;
+  const TrainOptions& options_;
+  HeldBack held_back_;
+  std::vector<Contender> contenders_;
+  std::vector<int> round_order_;  // the contenders in the round: indices, ascending
+  int round_ = 0, turn_ = 0, iteration_ = 0;
+  double damping_ = 0, mean_square_ = 0;  // of the optimiser
+  Eigen::VectorXd springs_;               // of the contender, in the last round
+  std::string status_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_MODEL_CHOICE_H_
