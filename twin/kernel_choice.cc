@@ -46,11 +46,11 @@ const Kernel<Real>& ChooseKernel(std::string_view wish) {
 
 template <class Real>
 const Kernel<Real>& BestKernel() {
-  static const Kernel<Real>& best = []() -> const Kernel<Real>& {
+  static const Kernel<Real>* const best = [] {
     const char* wish = std::getenv("PHYSPRING_KERNEL");
-    return ChooseKernel<Real>(wish != nullptr ? wish : "");
+    return &ChooseKernel<Real>(wish != nullptr ? wish : "");
   }();
-  return best;
+  return *best;
 }
 
 template const Kernel<float>* FindKernel(std::string_view);
