@@ -87,8 +87,11 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
              level.substeps_per_second / run.twin.fps);
   fmt::print("{}\n", fit_error);
   if (!status.empty()) fmt::print("{}\n", status);
-  fmt::print("time: {}, of it {} fitting, {} writing checkpoints\n", FormatDuration(seconds),
-             FormatDuration(run.fit_seconds), FormatDuration(run.checkpoint_seconds));
+  fmt::print("time: {}", FormatDuration(seconds));
+  for (const auto& [part, part_seconds] : run.parts) {
+    fmt::print(", {} {}", part, FormatDuration(part_seconds));
+  }
+  fmt::print("\n");
 }
 
 void Run(const Arguments& arguments) {

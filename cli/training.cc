@@ -45,17 +45,20 @@ TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double int
   const InterruptWatch interrupt;
   Progress progress(fitter->Progress());
   TrainingRun run;
+  double checkpoint_seconds = 0;
   const auto write = [&] {
     const Stopwatch writing;
     run.twin = checkpoint.Write(*fitter, run.finished);
-    run.checkpoint_seconds += writing.seconds();
+    checkpoint_seconds += writing.seconds();
     spdlog::info("checkpoint written in {:.2f} s", writing.seconds());
   };
   Stopwatch since_checkpoint;
   while (!run.finished && interrupt.signal() == 0) {
     const Stopwatch step;
+    const std::string part = fitter->Part();
     run.finished = !fitter->Step();
-    run.fit_seconds += step.seconds();
+    if (run.parts.empty() || run.parts.back().first != part) run.parts.emplace_back(part, 0);
+    run.parts.back().second += step.seconds();
     if (run.finished) break;
     spdlog::info("{:5.1f} %  {}", 100 * fitter->Progress(), fitter->Status());
     progress.Show(fitter->Progress(), fitter->Status());
@@ -65,6 +68,7 @@ TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double int
   }
   run.signal = interrupt.signal();
   write();
+  run.parts.emplace_back("writing checkpoints", checkpoint_seconds);
   return run;
 }
 

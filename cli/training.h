@@ -5,6 +5,7 @@
 #define PHYSPRING_CLI_TRAINING_H_
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/checkpoint.h"
@@ -17,8 +18,9 @@ struct TrainingRun {
   Twin twin;                      // as written
   bool finished = false;          // else a signal came first
   int signal = 0;                 // that came
-  double fit_seconds = 0;         // in steps
-  double checkpoint_seconds = 0;  // in writing
+  // Where the time went: Fitter::Part and seconds, in the order of their first step; the last one
+  // is writing checkpoints.
+  std::vector<std::pair<std::string, double>> parts;
 };
 
 // Writes `checkpoint` at most every `interval` seconds, and at the end. Each step and checkpoint is

@@ -200,6 +200,22 @@ double FullFit::Progress() const {
   return 0;
 }
 
+std::string FullFit::Part() const {
+  switch (state_.stage) {
+    case Stage::kChoose:
+      return "choosing the model";
+    case Stage::kCommon:
+      return "common factors";
+    case Stage::kGaussNewton:
+      return "single springs (Gauss-Newton)";
+    case Stage::kAdam:
+      return "single springs (Adam)";
+    case Stage::kDone:
+      break;
+  }
+  return "nothing";
+}
+
 std::map<std::string, NpzArray> FullFit::Save() const {
   StateArrays arrays;
   choice_.Save(&arrays);

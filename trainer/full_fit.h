@@ -29,6 +29,7 @@ class FullFit : public Fitter {
   bool Step() override;
   double Progress() const override;
   std::string Status() const override { return status_; }
+  std::string Part() const override;
   std::map<std::string, NpzArray> Save() const override;
   void Load(const std::map<std::string, NpzArray>& state) override;
   Twin Result() const override;
