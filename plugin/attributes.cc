@@ -25,7 +25,7 @@ Attributes::Attributes(const mjModel* model, int instance) : model_(model), inst
   const char* name = mj_id2name(model, mjOBJ_PLUGIN, instance);
   const mjpPlugin* plugin = mjp_getPluginAtSlot(model->plugin[instance]);
   where_ = plugin->name;
-  if (name != nullptr && *name != '\0') where_ += " " + Quote(name);
+  if (name != nullptr && *name != '\0') where_.append(" ").append(Quote(name));
 }
 
 void Attributes::Fail(const char* name, const std::string& problem) const {

@@ -21,6 +21,7 @@ class Attributes {
 
   // True if the attribute is given and not empty.
   bool Has(const char* name) const;
+  const char* Text(const char* name) const;  // "" if it is not given
 
   // The following throw Error, one line that names instance, attribute and value, unless the text
   // is what they return.
@@ -31,7 +32,6 @@ class Attributes {
   Eigen::VectorXd Each(const char* name, Eigen::Index count) const;
 
  private:
-  const char* Text(const char* name) const;
   template <class T>
   std::vector<T> Values(const char* name, const char* expected) const;
   [[noreturn]] void Fail(const char* name, const std::string& problem) const;

@@ -14,6 +14,7 @@ using Vector = Eigen::Vector3d;
 Level ReadLevelWithJoinedPairs(const mjModel* model, int instance) {
   const Attributes attributes(model, instance);
   Level level = ReadLevel(model, instance, attributes);
+  CheckOptions(model, level, attributes.where());
   ReadJoinedPairs(attributes, &level);
   return level;
 }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "twin/effects/effect_json.h"
+#include "twin/effects/registry.h"
 #include "twin/error.h"
 #include "twin/quote.h"
 
@@ -18,6 +20,25 @@ std::string BodyName(const mjModel* model, int body) {
 }
 
 bool IsFixed(const mjModel* model, int body) { return model->body_weldid[body] == 0; }
+
+// Where a body is at qpos0.
+Eigen::Vector3d Position(const mjModel* model, int body) {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (; body != 0; body = model->body_parentid[body]) {
+    mju_rotVecQuat(position.data(), Eigen::Vector3d(position).data(), model->body_quat + 4 * body);
+    position += Eigen::Map<const Eigen::Vector3d>(model->body_pos + 3 * body);
+  }
+  return position;
+}
+
+// Of each body with those that are fixed in it, kg.
+std::vector<double> WeldedMass(const mjModel* model) {
+  std::vector<double> mass(model->nbody, 0);
+  for (int body = 1; body < model->nbody; ++body) {
+    mass[model->body_weldid[body]] += model->body_mass[body];
+  }
+  return mass;
+}
 
 // Three slide joints along orthogonal axes.
 bool MovesFreely(const mjModel* model, int body) {
@@ -40,10 +61,6 @@ void CheckNode(const mjModel* model, int body, const std::string& where) {
     const double armature = model->dof_armature[dof + j];
     if (armature != 0) fail(fmt::format("has joint armature {}, expected 0", armature));
   }
-  if ((model->opt.enableflags & mjENBL_SLEEP) != 0 &&
-      model->tree_sleep_policy[model->body_treeid[body]] != mjSLEEP_NEVER) {
-    fail("may fall asleep while springs pull it, expected sleep=\"never\"");
-  }
 }
 
 void CheckParent(const mjModel* model, int instance, const LevelBodies& bodies,
@@ -65,16 +82,6 @@ void CheckParent(const mjModel* model, int instance, const LevelBodies& bodies,
     throw Error(fmt::format("{}: {} has no child bodies with joints, expected the nodes", where,
                             BodyName(model, bodies.parent)));
   }
-}
-
-void CheckIntegrator(const mjModel* model, const std::string& where) {
-  const int integrator = model->opt.integrator;
-  if (integrator == mjINT_EULER || integrator == mjINT_IMPLICIT ||
-      integrator == mjINT_IMPLICITFAST) {
-    return;
-  }
-  throw Error(fmt::format("{}: option integrator is {}, expected Euler, implicit or implicitfast",
-                          where, integrator == mjINT_RK4 ? "RK4" : "discrete"));
 }
 
 void CheckCount(const Attributes& attributes, const char* name, std::size_t found) {
@@ -100,6 +107,25 @@ void ReadContact(const Attributes& attributes, Level* level) {
   }
 }
 
+void ReadEffects(const Attributes& attributes, SpringMassSystem* system) {
+  if (attributes.Has("order")) {
+    system->order = attributes.Each("order", system->position.cols());
+  }
+  if (attributes.Has("effects")) {
+    system->effects =
+        EffectsFromJson(attributes.Text("effects"), attributes.where() + ": attribute 'effects'");
+  }
+}
+
+// What changes masses, rest lengths, gravity, contacts or the controllers' motion belongs there.
+void CheckEffects(const Attributes& attributes, const SpringMassSystem& system) {
+  for (const EffectValues& effect : system.effects) {
+    if (GetEffect(effect.name).MakeForce(system, effect.values)) continue;
+    throw Error(fmt::format("{}: attribute 'effects' has {}, expected effects that exert forces",
+                            attributes.where(), Quote(effect.name)));
+  }
+}
+
 }  // namespace
 
 LevelBodies FindBodies(const mjModel* model, int instance) {
@@ -121,7 +147,6 @@ LevelBodies FindBodies(const mjModel* model, int instance) {
 
 Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes) {
   const std::string& where = attributes.where();
-  CheckIntegrator(model, where);
   Level level;
   level.bodies = FindBodies(model, instance);
   CheckParent(model, instance, level.bodies, where);
@@ -132,17 +157,36 @@ Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes
   system.controllers = static_cast<int>(level.bodies.controllers.size());
   system.position.setZero(3, static_cast<Eigen::Index>(nodes.size()) + system.controllers);
   system.mass.resize(static_cast<Eigen::Index>(nodes.size()));
+  const std::vector<double> mass = WeldedMass(model);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     CheckNode(model, nodes[i], where);
     const Eigen::Index column = static_cast<Eigen::Index>(i);
-    system.position.col(column) = Eigen::Map<const Eigen::Vector3d>(model->body_pos + 3 * nodes[i]);
-    system.mass[column] = model->body_subtreemass[nodes[i]];
+    system.position.col(column) = Position(model, nodes[i]);
+    system.mass[column] = mass[nodes[i]];
     level.dofs.push_back(model->body_dofadr[nodes[i]]);
     level.joints.push_back(model->body_jntadr[nodes[i]]);
+  }
+  for (int c = 0; c < system.controllers; ++c) {
+    system.position.col(system.node_count() + c) = Position(model, level.bodies.controllers[c]);
   }
   ReadContact(attributes, &level);
   system.Validate(where);
   return level;
+}
+
+void CheckOptions(const mjModel* model, const Level& level, const std::string& where) {
+  const int integrator = model->opt.integrator;
+  if (integrator == mjINT_RK4 || integrator == mjINT_DISCRETE) {
+    throw Error(fmt::format("{}: option integrator is {}, expected Euler, implicit or implicitfast",
+                            where, integrator == mjINT_RK4 ? "RK4" : "discrete"));
+  }
+  if ((model->opt.enableflags & mjENBL_SLEEP) == 0) return;
+  for (int node : level.bodies.nodes) {
+    if (model->tree_sleep_policy[model->body_treeid[node]] == mjSLEEP_NEVER) continue;
+    throw Error(
+        fmt::format("{}: {} may fall asleep while springs pull it, expected sleep=\"never\"", where,
+                    BodyName(model, node)));
+  }
 }
 
 void ReadJoinedPairs(const Attributes& attributes, Level* level) {
@@ -173,7 +217,9 @@ void ReadSprings(const Attributes& attributes, Level* level) {
   system.rest_length = attributes.Each("rest_length", count);
   system.dashpot = attributes.Each("dashpot", count);
   system.drag = attributes.Number("drag", 0);
+  ReadEffects(attributes, &system);
   system.Validate(attributes.where());
+  CheckEffects(attributes, system);
 }
 
 }  // namespace physpring

@@ -30,7 +30,7 @@ struct Level {
   LevelBodies bodies;
   std::vector<int> dofs;            // (nodes) the first of a node's three
   std::vector<int> joints;          // (nodes) the first of a node's three
-  SpringMassSystem system;          // positions at qpos0, in the parent's axes
+  SpringMassSystem system;          // positions at qpos0, in the world
   bool has_surface = false;         // the contact law acts between nodes and geoms
   bool has_contact_radius = false;  // false: nodes touch where their geoms do
 };
@@ -39,11 +39,15 @@ struct Level {
 // the attributes. Throws Error, one line that names the instance and body or attribute and value.
 Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes);
 
+// Throws Error where the model's options keep the plugins from working: integrator, sleep. Apart
+// from ReadLevel, because the compiler counts a plugin's state before it decides about sleep.
+void CheckOptions(const mjModel* model, const Level& level, const std::string& where);
+
 // Reads which nodes springs join into `level`, as springs that do nothing: such nodes never
 // collide.
 void ReadJoinedPairs(const Attributes& attributes, Level* level);
 
-// Reads springs, their parameters and drag into `level`.
+// Reads springs, their parameters, drag and effects into `level`.
 void ReadSprings(const Attributes& attributes, Level* level);
 
 }  // namespace physpring

@@ -33,6 +33,11 @@ double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes)
                   attributes.where(), substep, stable));
 }
 
+std::unique_ptr<const EffectStep<double>> MakeEffects(const SpringMassSystem& system) {
+  if (system.effects.empty()) return nullptr;
+  return std::make_unique<const EffectStep<double>>(system, Vector::Zero());
+}
+
 // Between the particles only: MuJoCo finds the rest.
 Environment Nothing() { return {Vector::Zero(), {}}; }
 
@@ -43,7 +48,8 @@ SpringsModel::SpringsModel(const mjModel* model, int instance)
       controller_velocity(Attributes(model, instance).Flag("controller_velocity", true)),
       substep(ReadSubstep(level.system, Attributes(model, instance))),
       springs(level.system),
-      particles(level.system, Nothing()) {}
+      particles(level.system, Nothing()),
+      effects(MakeEffects(level.system)) {}
 
 const std::vector<const char*>& Springs::AttributeNames() {
   static const std::vector<const char*> names = {"nodes",
@@ -52,6 +58,8 @@ const std::vector<const char*>& Springs::AttributeNames() {
                                                  "stiffness",
                                                  "rest_length",
                                                  "dashpot",
+                                                 "order",
+                                                 "effects",
                                                  "drag",
                                                  "substep",
                                                  "controller_velocity",
@@ -68,15 +76,31 @@ Springs::Springs(const mjModel* model, int instance)
     : springs_(std::make_shared<SpringsModel>(model, instance)),
       surfaces_(model, instance, springs_->level),
       h_over_mass_(nodes()),
-      state_(springs_->springs.spare_node + 1),
+      state_(first_internal() + (springs_->effects ? springs_->effects->extra_records() : 0)),
       next_(state_.size()),
       force_(state_.size()),
       ways_(springs_->level.bodies.controllers.size()),
-      lag_(3 * static_cast<std::size_t>(nodes())) {}
+      lag_(3 * static_cast<std::size_t>(nodes())) {
+  const std::string where = Attributes(model, instance).where();
+  CheckOptions(model, springs_->level, where);
+  const std::size_t size = 3 * (static_cast<std::size_t>(nodes()) + ways_.size()) + 1 +
+                           6 * (state_.size() - first_internal());
+  if (static_cast<std::size_t>(model->plugin_statenum[instance]) == size) return;
+  throw Error(fmt::format("{}: the model was compiled with {} numbers of state, expected {}", where,
+                          model->plugin_statenum[instance], size));
+}
 
 int Springs::StateSize(const mjModel* model, int instance) {
   const LevelBodies bodies = FindBodies(model, instance);
-  return 3 * static_cast<int>(bodies.nodes.size() + bodies.controllers.size()) + 1;
+  const int size = 3 * static_cast<int>(bodies.nodes.size() + bodies.controllers.size()) + 1;
+  const Attributes attributes(model, instance);
+  if (!attributes.Has("effects")) return size;
+  try {
+    const Level level = ReadLevelWithSprings(model, instance, attributes);
+    return size + 6 * MakeEffects(level.system)->extra_records();
+  } catch (const Error&) {
+    return size;  // refused, with a message, when an instance is made
+  }
 }
 
 void Springs::SetTimestep(double h) {
@@ -120,6 +144,13 @@ void Springs::ReadControllers(const mjModel* model, const mjData* data, double t
   }
 }
 
+void Springs::ReadInternal(const double* internal) {
+  for (std::size_t i = first_internal(); i < state_.size(); ++i, internal += 6) {
+    std::copy(internal, internal + 3, state_[i].x);
+    std::copy(internal + 3, internal + 6, state_[i].v);
+  }
+}
+
 bool Springs::IsFinite() const {
   double sum = 0;
   for (int i = 0; i < nodes(); ++i) {
@@ -140,11 +171,14 @@ void Springs::PlaceControllers(double elapsed, double h) {
   }
 }
 
-void Springs::Substep(double elapsed, double h, const Contact<double>::Pairs& pairs) {
+void Springs::Substep(double time, double elapsed, double h, const Contact<double>::Pairs& pairs) {
   const Kernel<double>& kernel = BestKernel<double>();
   PlaceControllers(elapsed, h);
   std::fill(force_.begin(), force_.end(), NodeForce<double>{});
   kernel.add_spring_forces(springs_->springs.View(), state_.data(), force_.data());
+  if (springs_->effects) {
+    springs_->effects->AddForces(time + elapsed, h, state_, &next_, &force_, &effect_buffers_);
+  }
   kernel.update_velocities(view_, state_.data(), force_.data(), next_.data());
   if (!pairs.empty()) springs_->particles.Apply(state_, pairs, {}, elapsed, h, &next_, &impacts_);
   surfaces_.Apply(state_, h, &next_);
@@ -166,10 +200,11 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   const double* plugin_state = data->plugin_state + model->plugin_stateadr[instance];
   ReadNodes(step, data, plugin_state);
   ReadControllers(model, data, time, plugin_state);
+  ReadInternal(plugin_state + 3 * (nodes() + ways_.size()) + 1);
   if (!IsFinite()) return;  // MuJoCo warns
   surfaces_.Collect(model, data, state_);
   const Contact<double>::Pairs pairs = springs_->particles.FindPairs(state_, time);
-  for (int i = 0; i < substeps; ++i) Substep(i * h, h, pairs);
+  for (int i = 0; i < substeps; ++i) Substep(data->time, i * h, h, pairs);
   WriteForces(model, step, substeps, data);
 }
 
@@ -201,12 +236,17 @@ void Springs::Advance(const mjModel* model, mjData* data, int instance) {
   } else {  // passive forces are switched off
     std::fill(lag, lag + lag_.size(), 0);
   }
-  is_computed_ = false;
   double* before = lag + lag_.size();
   for (int body : springs_->level.bodies.controllers) {
     before = std::copy(data->xpos + 3 * body, data->xpos + 3 * body + 3, before);
   }
   *before = 1;
+  double* internal = before + 1;
+  for (std::size_t i = first_internal(); is_computed_ && i < state_.size(); ++i) {
+    internal = std::copy(state_[i].x, state_[i].x + 3, internal);
+    internal = std::copy(state_[i].v, state_[i].v + 3, internal);
+  }
+  is_computed_ = false;
 }
 
 }  // namespace physpring

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plugin physpring.springs: springs, dashpots, drag and contacts of one level, integrated with
-// sub-steps of its own inside MuJoCo's step, by the kernel of the trainer (twin/kernel.h).
+// The plugin physpring.springs: springs, dashpots, drag, effects and contacts of one level,
+// integrated with sub-steps of its own inside MuJoCo's step, by the kernel of the trainer
+// (twin/kernel.h).
 //
 // A step of length H has n sub-steps of h = H / n. MuJoCo knows one velocity a node and step: the
 // force is the one that gives the node the mean velocity of the sub-steps, v_mean, so that it lands
@@ -22,6 +23,7 @@
 #include "plugin/level.h"
 #include "plugin/surfaces.h"
 #include "twin/contact.h"
+#include "twin/effects/effect_step.h"
 #include "twin/kernel_choice.h"
 #include "twin/spring_blocks.h"
 
@@ -34,6 +36,7 @@ struct SpringsModel {
   double substep;  // s, the longest
   SpringBlocks<double> springs;
   Contact<double> particles;  // contacts of the level's nodes with each other
+  std::unique_ptr<const EffectStep<double>> effects;  // null: none
 
   // Throws Error, one line that names instance, attribute and value.
   SpringsModel(const mjModel* model, int instance);
@@ -47,7 +50,8 @@ class Springs {
   Springs(const mjModel* model, int instance);
   Springs(const Springs& other) = default;
 
-  // Of plugin_state: the nodes' lag, where the controllers were, and whether that is known.
+  // Of plugin_state: the nodes' lag, where the controllers were, whether that is known, and the
+  // effects' internal variables.
   static int StateSize(const mjModel* model, int instance);
 
   void Compute(const mjModel* model, mjData* data, int instance);
@@ -60,14 +64,17 @@ class Springs {
     bool is_mocap;
   };
 
+  // The records of a state that hold the effects' internal variables.
+  std::size_t first_internal() const { return springs_->springs.spare_node + 1; }
   int nodes() const { return springs_->level.system.node_count(); }
   void SetTimestep(double h);
   void ReadNodes(const EulerStep& step, const mjData* data, const double* lag);
   void ReadControllers(const mjModel* model, const mjData* data, double time,
                        const double* plugin_state);
+  void ReadInternal(const double* internal);
   bool IsFinite() const;
   void PlaceControllers(double elapsed, double h);
-  void Substep(double elapsed, double h, const Contact<double>::Pairs& pairs);
+  void Substep(double time, double elapsed, double h, const Contact<double>::Pairs& pairs);
   void WriteForces(const mjModel* model, const EulerStep& step, int substeps, mjData* data);
 
   std::shared_ptr<const SpringsModel> springs_;
@@ -79,6 +86,7 @@ class Springs {
   NodeStates<double> state_, next_;
   NodeForces<double> force_;
   Contact<double>::Impacts impacts_;
+  EffectBuffers effect_buffers_;
   std::vector<Way> ways_;
   std::vector<double> lag_;
   bool is_computed_ = false;
