@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   physpring::AddRecordCommand(app);
   physpring::AddTrainCommand(app);
   physpring::AddEvalCommand(app);
+  physpring::AddExportCommand(app);
   physpring::AddInfoCommand(app);
   physpring::AddDoctorCommand(app);
   try {

@@ -18,7 +18,7 @@ const char* const kAxes[] = {"1 0 0", "0 1 0", "0 0 1"};
 const char* const kAxisNames[] = {"x", "y", "z"};
 // With the plugin: MuJoCo's own contact only starts at this depth, and geoms are found this far
 // away, m.
-constexpr double kDepth = 0.015, kDetection = 0.02;
+constexpr double kDepth = 0.015, kDetection = 0.01;
 constexpr double kTendonWidth = 5e-4;  // m, in pictures
 constexpr double kLeastDampingRatio = 0.05;
 
@@ -31,7 +31,7 @@ double Radius(const SpringMassSystem& system, int node) {
 }
 
 // Of sites and controllers, in pictures.
-double DrawnRadius(const SpringMassSystem& system) { return 0.25 * system.rest_length.mean(); }
+double DrawnRadius(const Twin& twin) { return 0.25 * twin.levels[0].system.rest_length.mean(); }
 
 double Damping(const LevelPlan& plan, int node) {
   const double h = plan.substep;
@@ -122,7 +122,7 @@ void AddController(const LevelPlan& plan, int controller, XmlElement* worldbody)
 
 void AddDefaults(const LevelPlan& plan, XmlElement* mujoco) {
   const SpringMassSystem& system = plan.system();
-  const std::string size = Number(DrawnRadius(system));
+  const std::string size = Number(DrawnRadius(*plan.twin));
   XmlElement* top = AddElement(AddElement(mujoco, "default"), "default", {{"class", plan.name}});
   AddElement(top, "site", {{"size", size}, {"group", "4"}});
   AddElement(top, "tendon", {{"width", Number(kTendonWidth)}, {"group", "4"}});

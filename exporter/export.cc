@@ -21,6 +21,7 @@ std::vector<int> ChosenLevels(const Twin& twin, const ExportOptions& options) {
 
 Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::string& command) {
   Export result;
+  const Picture picture = MakePicture(twin, options.mesh);
   for (const int number : ChosenLevels(twin, options)) {
     ExportedLevel level;
     level.plan = PlanLevel(twin, number, options);
@@ -29,7 +30,7 @@ Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::str
     }
     level.model = fmt::format("level{}.xml", number);
     level.scene = result.levels.empty() ? "scene.xml" : fmt::format("scene_level{}.xml", number);
-    result.files[level.model] = FormatLevel(level.plan, level.flexes);
+    result.files[level.model] = FormatLevel(level.plan, level.flexes, picture);
     result.files[level.scene] = FormatScene(level.plan, level.model);
     result.levels.push_back(std::move(level));
   }

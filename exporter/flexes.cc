@@ -127,7 +127,8 @@ FlexGroups GroupSprings(const SpringMassSystem& system, int count) {
 }
 
 void AddFlexes(const LevelPlan& plan, const FlexGroups& flexes, XmlElement* mujoco) {
-  XmlElement* deformable = AddElement(mujoco, "deformable");
+  if (flexes.groups.empty()) return;
+  XmlElement* deformable = Section(mujoco, "deformable");
   for (std::size_t i = 0; i < flexes.groups.size(); ++i) {
     AddFlex(plan, flexes.groups[i], fmt::format("{}_springs_{}", plan.name, i), deformable);
   }

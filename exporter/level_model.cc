@@ -32,21 +32,17 @@ void AddNumbers(const LevelPlan& plan, XmlElement* mujoco) {
   AddElement(custom, "numeric", {{"name", plan.name + "_substep"}, {"data", Number(plan.substep)}});
 }
 
-void AddSprings(const LevelPlan& plan, const FlexGroups& flexes, XmlElement* mujoco) {
-  if (plan.springs == SpringKind::kPlugin) return;
-  if (plan.springs == SpringKind::kFlex) {
-    AddFlexes(plan, flexes, mujoco);
-    AddTendons(plan, flexes.tendons, mujoco);
-    return;
-  }
+// Springs that are neither in a flex nor the plugin's.
+std::vector<int> SpringsWithTendons(const LevelPlan& plan, const FlexGroups& flexes) {
+  if (plan.springs != SpringKind::kTendon) return flexes.tendons;
   std::vector<int> all(plan.system().springs.size());
   std::iota(all.begin(), all.end(), 0);
-  AddTendons(plan, all, mujoco);
+  return all;
 }
 
 }  // namespace
 
-std::string FormatLevel(const LevelPlan& plan, const FlexGroups& flexes) {
+std::string FormatLevel(const LevelPlan& plan, const FlexGroups& flexes, const Picture& picture) {
   tinyxml2::XMLDocument document;
   XmlElement* mujoco = document.NewElement("mujoco");
   document.InsertEndChild(mujoco);
@@ -58,7 +54,10 @@ std::string FormatLevel(const LevelPlan& plan, const FlexGroups& flexes) {
   XmlElement* worldbody = AddElement(mujoco, "worldbody");
   AddNodes(plan, worldbody);
   AddControllers(plan, worldbody);
-  AddSprings(plan, flexes, mujoco);
+  AddFlexes(plan, flexes, mujoco);
+  AddTendons(plan, SpringsWithTendons(plan, flexes), mujoco);
+  AddAnchors(plan, mujoco);
+  AddPicture(plan, picture, mujoco);
   AddActuators(plan, mujoco);
   // without values: the reference configuration, whatever else is in the scene
   AddElement(AddElement(mujoco, "keyframe"), "key", {{"name", plan.name + "_home"}});

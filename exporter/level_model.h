@@ -9,11 +9,12 @@
 
 #include "exporter/flexes.h"
 #include "exporter/level_plan.h"
+#include "exporter/picture.h"
 
 namespace physpring {
 
 // `flexes`: which springs are edges of which flex, for SpringKind::kFlex.
-std::string FormatLevel(const LevelPlan& plan, const FlexGroups& flexes);
+std::string FormatLevel(const LevelPlan& plan, const FlexGroups& flexes, const Picture& picture);
 
 }  // namespace physpring
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "twin/effects/effect_set.h"
+#include "twin/effects/registry.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/predict.h"
@@ -66,6 +68,26 @@ void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
   }
 }
 
+// Which effects MuJoCo's own features carry, and how well.
+void PlanEffects(LevelPlan* plan) {
+  using Carrier = EffectMjcf::Carrier;
+  const SpringMassSystem& trained = plan->twin->levels[plan->level].system;
+  plan->setting = ApplyEffects(trained, plan->twin->gravity);
+  for (const EffectValues& values : trained.effects) {
+    EffectMjcf effect = GetEffect(values.name).Mjcf(values.values, plan->system());
+    if (effect.carrier == Carrier::kTendon && plan->springs != SpringKind::kTendon) {
+      effect = {Carrier::kPlugin, {}, {}, "only tendons carry it"};
+    }
+    const bool missing = effect.carrier == Carrier::kPlugin;
+    if (missing || !effect.difference.empty()) {
+      plan->differences.push_back(fmt::format("effect {} is {}: {}", values.name,
+                                              missing ? "left out" : "approximate",
+                                              effect.difference));
+    }
+    plan->effects.push_back(std::move(effect));
+  }
+}
+
 }  // namespace
 
 std::string LevelPlan::Body(int column) const {
@@ -86,6 +108,7 @@ LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
   plan.controllers = ChooseControllers(twin, options);
   plan.contact = ChooseContact(options);
   plan.flexes = options.flexes;
+  PlanEffects(&plan);
   ChooseTimesteps(options, &plan);
   return plan;
 }

@@ -4,8 +4,10 @@
 #define PHYSPRING_EXPORTER_LEVEL_PLAN_H_
 
 #include <string>
+#include <vector>
 
 #include "exporter/options.h"
+#include "twin/effects/effect.h"
 #include "twin/twin.h"
 
 namespace physpring {
@@ -23,7 +25,12 @@ struct LevelPlan {
   double timestep = 0;           // s: of scene.xml; equal to the sub-step without the plugin
   double critical_timestep = 0;  // s: the largest stable sub-step
 
-  const SpringMassSystem& system() const { return twin->levels[level].system; }
+  // The level as its effects change it, and what carries those effects in MuJoCo.
+  Setting setting;
+  std::vector<EffectMjcf> effects;
+  std::vector<std::string> differences;  // from the trained level, in words
+
+  const SpringMassSystem& system() const { return setting.system; }
   bool NeedsPlugin() const {
     return springs == SpringKind::kPlugin || contact == ContactKind::kPlugin;
   }

@@ -52,6 +52,16 @@ std::string DescribeContact(const LevelPlan& plan) {
   }
 }
 
+std::string DescribeDifferences(const std::vector<ExportedLevel>& levels) {
+  std::string text;
+  for (const ExportedLevel& level : levels) {
+    for (const std::string& difference : level.plan.differences) {
+      text += fmt::format("- `{}`: {}\n", level.model, difference);
+    }
+  }
+  return text.empty() ? "" : "Where it differs from the trained twin:\n" + text + "\n";
+}
+
 std::string DescribeControllers(const LevelPlan& plan) {
   if (plan.system().controllers == 0) return "";
   if (plan.controllers == ControllerKind::kMocap) {
@@ -89,7 +99,7 @@ model = mujoco.MjModel.from_xml_path("scene.xml")
 
 {5} {6}
 
-{7}In a scene of your own, with a time step below the largest stable one and the Euler integrator:
+{7}{9}In a scene of your own, with a time step below the largest stable one and the Euler integrator:
 
 ```xml
 <asset>
@@ -104,7 +114,8 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
 )",
                      plan.name, plan.twin->trained_on.empty() ? "a recording" : "recordings",
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
-                     DescribeContact(plan), DescribeControllers(plan), levels[0].model);
+                     DescribeContact(plan), DescribeControllers(plan), levels[0].model,
+                     DescribeDifferences(levels));
 }
 
 }  // namespace physpring

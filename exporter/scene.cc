@@ -18,7 +18,7 @@ struct Extent {
 };
 
 Extent MeasureExtent(const LevelPlan& plan) {
-  const Eigen::Vector3d& gravity = plan.twin->gravity;
+  const Eigen::Vector3d& gravity = plan.setting.gravity;
   const Points& position = plan.system().position;
   const Eigen::Vector3d low = position.rowwise().minCoeff(), high = position.rowwise().maxCoeff();
   Extent extent;
@@ -44,7 +44,7 @@ void AddCamera(const Extent& extent, XmlElement* worldbody) {
   axes << right, back.cross(right);
   AddElement(worldbody, "camera",
              {{"name", "view"},
-              {"pos", Numbers(extent.centre + 1.8 * extent.size * back)},
+              {"pos", Numbers(extent.centre + 1.3 * extent.size * back)},
               {"xyaxes", Numbers(axes)}});
 }
 
@@ -52,7 +52,7 @@ void AddOptions(const LevelPlan& plan, const Extent& extent, XmlElement* mujoco)
   AddElement(mujoco, "option",
              {{"timestep", Number(plan.timestep)},
               {"integrator", "Euler"},
-              {"gravity", Numbers(plan.twin->gravity)}});
+              {"gravity", Numbers(plan.setting.gravity)}});
   AddElement(mujoco, "statistic",
              {{"center", Numbers(extent.centre)}, {"extent", Number(2 * extent.size)}});
   XmlElement* visual = AddElement(mujoco, "visual");

@@ -11,8 +11,11 @@
 
 namespace physpring {
 
-// Those springs, by number.
+// Those springs, by number, with what effects make of them.
 void AddTendons(const LevelPlan& plan, const std::vector<int>& springs, XmlElement* mujoco);
+
+// The springs of effects that hold nodes to places of the world.
+void AddAnchors(const LevelPlan& plan, XmlElement* mujoco);
 
 }  // namespace physpring
 

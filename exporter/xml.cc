@@ -39,6 +39,11 @@ XmlElement* AddElement(XmlElement* parent, const char* tag, XmlAttributes attrib
   return element;
 }
 
+XmlElement* Section(XmlElement* parent, const char* tag) {
+  XmlElement* section = parent->FirstChildElement(tag);
+  return section ? section : AddElement(parent, tag);
+}
+
 void AddComment(XmlElement* parent, const std::string& text) {
   parent->InsertNewComment((" " + text + " ").c_str());
 }

@@ -27,6 +27,9 @@ std::string Numbers(const std::vector<int>& values);
 // Appends <tag .../> to `parent`.
 XmlElement* AddElement(XmlElement* parent, const char* tag, XmlAttributes attributes = {});
 
+// The element <tag> of `parent`, appended if there is none.
+XmlElement* Section(XmlElement* parent, const char* tag);
+
 // Appends <!-- text -->; the text must not hold "--".
 void AddComment(XmlElement* parent, const std::string& text);
 

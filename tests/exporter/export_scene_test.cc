@@ -3,11 +3,13 @@
 // warning, in its own scene and in others.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <tuple>
 
 #include "rollout/mujoco_log.h"
 #include "tests/support/exported_folder.h"
 #include "tests/support/small_twin.h"
+#include "twin/effects/registry.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -192,6 +194,100 @@ TEST(ExportScene, NodesRestOnTheFloor) {
     EXPECT_GT(data->xpos[3 * body + 2], 0.9 * 0.005);
     EXPECT_LT(mju_norm3(data->cvel + 6 * body + 3), 0.05);
   }
+}
+
+// The vertices of the skin as MuJoCo draws them.
+Eigen::MatrixX3f SkinVertices(const mjModel& model, mjData* data) {
+  mj_forward(&model, data);
+  mjvScene scene;
+  mjvOption option;
+  mjvCamera camera;
+  mjv_defaultCamera(&camera);
+  mjv_defaultOption(&option);
+  mjv_defaultScene(&scene);
+  mjv_makeScene(&model, &scene, 10000);
+  mjv_updateScene(&model, data, &option, nullptr, &camera, mjCAT_ALL, &scene);
+  const Eigen::Map<const Eigen::Matrix3Xf> vertices(scene.skinvert, 3, model.nskinvert);
+  const Eigen::MatrixX3f rows = vertices.transpose();
+  mjv_freeScene(&scene);
+  return rows;
+}
+
+TEST(ExportScene, SkinTurnsWithTheNodes) {
+  const Twin twin = SmallTwin(2);
+  const ExportedFolder folder(twin, {});
+  for (const ExportedLevel& level : folder.result.levels) {
+    const ModelPtr model = folder.Load(level.scene);
+    ASSERT_EQ(model->nskin, 1);
+    const DataPtr data = MakeData(*model);
+    const Eigen::MatrixX3f before = SkinVertices(*model, data.get());
+    const Eigen::AngleAxisd turn(1, Eigen::Vector3d(1, 2, 3).normalized());
+    const SpringMassSystem& system = level.plan.system();
+    const Points nodes = system.position.leftCols(system.node_count());
+    Eigen::Map<Points>(data->qpos, 3, nodes.cols()) = turn.matrix() * nodes - nodes;
+    const Eigen::MatrixX3f after = SkinVertices(*model, data.get());
+    const Eigen::MatrixX3f expected = before * turn.matrix().transpose().cast<float>();
+    // by the regularisation of the weights, in parts of the nodes' distance; level 1 is one layer
+    // of nodes, which leaves open how what lies above and below it turns
+    const double difference = (after - expected).rowwise().norm().maxCoeff();
+    EXPECT_LT(difference, (level.plan.level == 0 ? 0.2 : 0.5) * 0.02);
+  }
+}
+
+TEST(ExportScene, AMeshIsWornByAllLevels) {
+  const Twin twin = SmallTwin(2);
+  const TemporaryFolder files;
+  std::ofstream(files.File("m.obj")) << "v 0 0 0\nv 0.08 0 0\nv 0 0.06 0\nf 1 2 3\n";
+  ExportOptions options;
+  options.mesh = files.File("m.obj");
+  const ExportedFolder folder(twin, options);
+  for (const ExportedLevel& level : folder.result.levels) {
+    EXPECT_EQ(folder.Load(level.scene)->nskinvert, 3);
+  }
+}
+
+TEST(ExportScene, AMeshMustBeWhereTheTwinIs) {
+  const TemporaryFolder files;
+  std::ofstream(files.File("m.obj")) << "v 0 0 5\nv 0.08 0 5\nv 0 0.06 5\nf 1 2 3\n";
+  ExportOptions options;
+  options.mesh = files.File("m.obj");
+  const Twin twin = SmallTwin(1);
+  try {
+    ExportTwin(twin, options, "");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(),
+              options.mesh +
+                  ": lies from (0, 0, 5) to (0.08, 0.06, 5), the twin from (0, 0, 0) to (0.08, "
+                  "0.06, 0.02); a mesh must be in the coordinates of the recording, in metres");
+  }
+}
+
+TEST(ExportScene, ARodIsDrawnAlongItsOrder) {
+  Twin twin = SmallTwin(2);
+  twin.order = Eigen::VectorXd::LinSpaced(42, 0, 1);
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  EXPECT_EQ(model->nskin, 0);
+  const int rod = Id(model, mjOBJ_TENDON, "block_rod");
+  ASSERT_EQ(rod, model->ntendon - 1);  // after the springs
+  EXPECT_EQ(model->tendon_num[rod], 40);
+  EXPECT_EQ(model->tendon_stiffness[rod], 0);
+}
+
+TEST(ExportScene, EffectsAreCarriedByTendons) {
+  Twin twin = SmallTwin(1);
+  SpringMassSystem& system = twin.levels[0].system;
+  system.effects.push_back({"stiffening", Eigen::VectorXd::Constant(1, 3)});
+  system.effects.push_back({"air_drag", GetEffect("air_drag").Starts(system)[0]});
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  const double k = system.stiffness[5], length = system.rest_length[5];
+  EXPECT_EQ(model->tendon_stiffness[5], k);
+  EXPECT_DOUBLE_EQ(model->tendon_stiffnesspoly[mjNPOLY * 5 + 1], 3 * k / (length * length));
+  const std::vector<std::string>& differences = folder.result.levels[0].plan.differences;
+  ASSERT_EQ(differences.size(), 1u);
+  EXPECT_EQ(differences[0].rfind("effect air_drag is left out: ", 0), 0u);
 }
 
 TEST(ExportScene, OddCharactersInATwinsName) {

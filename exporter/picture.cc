@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporter/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "exporter/mesh_file.h"
+#include "exporter/skin_weights.h"
+#include "exporter/surface.h"
+#include "twin/error.h"
+#include "twin/hierarchy.h"
+
+namespace physpring {
+namespace {
+
+const char* const kColour = "0.36 0.55 0.78 1";
+
+// Single precision is all that MuJoCo keeps of a skin.
+template <class Values>
+std::string ShortNumbers(const Values& values) {
+  std::string text;
+  for (const auto value : values) fmt::format_to(std::back_inserter(text), "{:.6g} ", value);
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+void ExpectSamePlace(const Points& mesh, const Points& nodes, const std::string& file) {
+  const Eigen::Vector3d mesh_low = mesh.rowwise().minCoeff(), mesh_high = mesh.rowwise().maxCoeff();
+  const Eigen::Vector3d low = nodes.rowwise().minCoeff(), high = nodes.rowwise().maxCoeff();
+  if ((mesh_low.array() <= high.array()).all() && (mesh_high.array() >= low.array()).all()) return;
+  throw Error(fmt::format(
+      "{}: lies from ({:.3g}) to ({:.3g}), the twin from ({:.3g}) to ({:.3g}); a mesh must be in "
+      "the coordinates of the recording, in metres",
+      file, fmt::join(mesh_low, ", "), fmt::join(mesh_high, ", "), fmt::join(low, ", "),
+      fmt::join(high, ", ")));
+}
+
+// Nodes along the rod: a node's place is the mean of its members'.
+std::vector<int> NodesAlongRod(const LevelPlan& plan) {
+  const int count = plan.system().node_count();
+  const std::vector<int> node_of = NodesOfParticles(*plan.twin, plan.level);
+  Eigen::VectorXd place = Eigen::VectorXd::Zero(count), members = Eigen::VectorXd::Zero(count);
+  for (std::size_t i = 0; i < node_of.size(); ++i) {
+    place[node_of[i]] += plan.twin->order[static_cast<Eigen::Index>(i)];
+    members[node_of[i]] += 1;
+  }
+  place = place.cwiseQuotient(members);
+  std::vector<int> nodes(static_cast<std::size_t>(count));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return place[a] < place[b]; });
+  return nodes;
+}
+
+void AddRod(const LevelPlan& plan, const Picture& picture, XmlElement* mujoco) {
+  XmlElement* spatial = AddElement(
+      Section(mujoco, "tendon"), "spatial",
+      {{"name", plan.name + "_rod"}, {"width", Number(picture.radius)}, {"rgba", kColour}});
+  for (const int node : NodesAlongRod(plan)) {
+    AddElement(spatial, "site", {{"site", plan.Body(node)}});
+  }
+}
+
+void AddSkin(const LevelPlan& plan, const Picture& picture, XmlElement* mujoco) {
+  const Points nodes = plan.system().position.leftCols(plan.system().node_count());
+  std::vector<int> faces;
+  for (const std::array<int, 3>& face : picture.mesh.faces) {
+    faces.insert(faces.end(), face.begin(), face.end());
+  }
+  XmlElement* skin = AddElement(Section(mujoco, "deformable"), "skin",
+                                {{"name", plan.name + "_skin"},
+                                 {"rgba", kColour},
+                                 {"inflate", Number(picture.radius)},
+                                 {"vertex", ShortNumbers(picture.mesh.vertices.reshaped())},
+                                 {"face", Numbers(faces)}});
+  const auto carried = BindToNodes(picture.mesh.vertices, nodes);
+  for (int node = 0; node < plan.system().node_count(); ++node) {
+    if (carried[node].empty()) continue;
+    std::vector<int> vertices;
+    std::vector<double> weights;
+    for (const SkinWeight& weight : carried[node]) {
+      vertices.push_back(weight.vertex);
+      weights.push_back(weight.weight);
+    }
+    AddElement(skin, "bone",
+               {{"body", plan.Body(node)},
+                {"bindpos", ShortNumbers(nodes.col(node))},
+                {"bindquat", "1 0 0 0"},
+                {"vertid", Numbers(vertices)},
+                {"vertweight", ShortNumbers(weights)}});
+  }
+}
+
+}  // namespace
+
+Picture MakePicture(const Twin& twin, const std::string& mesh_file) {
+  const SpringMassSystem& system = twin.levels[0].system;
+  const Points nodes = system.position.leftCols(system.node_count());
+  Picture picture;
+  if (!mesh_file.empty()) {
+    picture.mesh = ReadMesh(mesh_file);
+    ExpectSamePlace(picture.mesh.vertices, nodes, mesh_file);
+    return picture;
+  }
+  const double spacing = Spacing(nodes), contact_radius = system.contact_radius.mean();
+  picture.rod = twin.order.size() > 0;
+  if (picture.rod) {
+    picture.radius = std::clamp(contact_radius, 0.1 * spacing, 0.5 * spacing);
+  } else if (IsSheet(nodes)) {
+    picture.radius = std::clamp(contact_radius, 0.02 * spacing, 0.2 * spacing);
+    picture.mesh = SheetSurface(nodes);
+  } else {
+    picture.mesh = ClosedSurface(nodes, std::clamp(contact_radius, 0.5 * spacing, spacing));
+  }
+  return picture;
+}
+
+void AddPicture(const LevelPlan& plan, const Picture& picture, XmlElement* mujoco) {
+  if (picture.rod) {
+    AddRod(plan, picture, mujoco);
+  } else {
+    AddSkin(plan, picture, mujoco);
+  }
+}
+
+}  // namespace physpring
