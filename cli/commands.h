@@ -12,6 +12,7 @@ void AddRecordCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
 void AddExportCommand(CLI::App& app);
+void AddDiagnoseCommand(CLI::App& app);
 void AddInfoCommand(CLI::App& app);
 void AddDoctorCommand(CLI::App& app);
 

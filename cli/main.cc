@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   physpring::AddTrainCommand(app);
   physpring::AddEvalCommand(app);
   physpring::AddExportCommand(app);
+  physpring::AddDiagnoseCommand(app);
   physpring::AddInfoCommand(app);
   physpring::AddDoctorCommand(app);
   try {

@@ -52,7 +52,7 @@ class AirDrag : public Effect {
  public:
   std::string name() const override { return "air_drag"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"drag_kg_per_m", 0, 100, 0.05},
+    return {{"drag_kg_per_m", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"wind_x_m_per_s", -30, 30, 1},
             {"wind_y_m_per_s", -30, 30, 1},
             {"wind_z_m_per_s", -30, 30, 1}};

@@ -26,10 +26,10 @@ class Bending : public Effect {
  public:
   std::string name() const override { return "bending"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"flexural_rigidity_n_m2", 0, 10, 1e-4}};
+    return {{"flexural_rigidity_n_m2", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 1e-4)};
+    return {Eigen::VectorXd::Constant(1, 1e-5), Eigen::VectorXd::Constant(1, 1e-3)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

@@ -26,10 +26,10 @@ class BendingDamping : public Effect {
  public:
   std::string name() const override { return "bending_damping"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"damping_n_m2_s", 0, 1, 1e-5}};
+    return {{"damping_n_m2_s", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(1)};
+    return {Eigen::VectorXd::Constant(1, 1e-6)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

@@ -51,11 +51,11 @@ class BendingFriction : public Effect {
  public:
   std::string name() const override { return "bending_friction"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"moment_n_m", 0, 10, 1e-3},
+    return {{"moment_n_m", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"slip_angle_rad", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::Vector2d(0, 0.03), Eigen::Vector2d(1e-3, 0.1)};
+    return {Eigen::Vector2d(1e-4, 0.03), Eigen::Vector2d(1e-3, 0.1)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

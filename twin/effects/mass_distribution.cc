@@ -20,7 +20,7 @@ class MassDistribution : public Effect {
  public:
   std::string name() const override { return "mass_distribution"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"mass_kg", 0, 100, 0.02},
+    return {{"mass_kg", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"place_x_m", -100, 100, 0.05},
             {"place_y_m", -100, 100, 0.05},
             {"place_z_m", -100, 100, 0.05},

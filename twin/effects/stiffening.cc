@@ -35,10 +35,10 @@ class Stiffening : public Effect {
  public:
   std::string name() const override { return "stiffening"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"cubic_stiffness_ratio", 0, 1e4, 20}};
+    return {{"cubic_stiffness_ratio", 0, 1e4, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(1)};
+    return {Eigen::VectorXd::Constant(1, 1)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

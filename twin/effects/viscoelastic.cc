@@ -48,7 +48,7 @@ class Viscoelastic : public Effect {
  public:
   std::string name() const override { return "viscoelastic"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"stiffness_ratio", 0, 20, 0.3},
+    return {{"stiffness_ratio", 0, 20, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"relaxation_time_s", 0, 20, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {

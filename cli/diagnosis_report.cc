@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/diagnosis_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/effects/effect_json.h"
+#include "twin/effects/registry.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// null where there is nothing to average over
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json Pair(const TrackPair& track) {
+  return {{"fit", Number(track.fit)}, {"heldout", Number(track.held)}};
+}
+
+Json EffectList(const std::vector<EffectValues>& effects) {
+  return Json::parse(EffectsToJson(effects));
+}
+
+Json Direction(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
+
+Json UnexplainedJson(const Diagnosis& diagnosis) {
+  if (!diagnosis.unexplained) return nullptr;
+  const Unexplained& left = *diagnosis.unexplained;
+  return {{"track", left.track},
+          {"point", left.point},
+          {"position", Direction(left.position)},
+          {"from_s", left.first_time},
+          {"to_s", left.last_time},
+          {"direction", Direction(left.direction)}};
+}
+
+std::string Millimetres(double metres) {
+  return std::isfinite(metres) ? fmt::format("{:.2f} mm", 1e3 * metres) : "no data";
+}
+
+std::string Interval(const BootstrapResult& gain) {
+  return fmt::format("{:.2f} mm less, 95 % interval {:.2f} to {:.2f}", 1e3 * gain.mean,
+                     1e3 * gain.low, 1e3 * gain.high);
+}
+
+// "mass_kg 0.052, place_x_m 0.1, ..."
+std::string DescribeParameters(const EffectValues& effect) {
+  std::string text;
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
+    text += (text.empty() ? "" : ", ") + parameter.key;
+    for (int n = 0; n < parameter.count; ++n) text += fmt::format(" {:.3g}", effect.values[i++]);
+  }
+  return text;
+}
+
+std::string Verdict(const Diagnosis& diagnosis) {
+  if (diagnosis.effects.empty() && !diagnosis.unexplained) return "nothing is missing";
+  std::string verdict;
+  for (const EffectValues& effect : diagnosis.effects) {
+    verdict += (verdict.empty() ? "the model lacks " : ", ") + effect.name;
+  }
+  if (!diagnosis.unexplained) return verdict;
+  const Unexplained& left = *diagnosis.unexplained;
+  return fmt::format(
+      "{}{} above the noise are unexplained, most of it at point {}, {:.2f} to {:.2f} s, towards "
+      "({:.2f}, {:.2f}, {:.2f})",
+      verdict.empty() ? "" : verdict + "; ", Millimetres(left.track), left.point, left.first_time,
+      left.last_time, left.direction[0], left.direction[1], left.direction[2]);
+}
+
+// A curve of the errors in time as SVG.
+std::string Curve(const FrameTrack& track, double top, const char* colour) {
+  if (track.size() < 2) return "";
+  std::string points;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    points += fmt::format("{:.1f},{:.1f} ",
+                          800.0 * static_cast<double>(i) / static_cast<double>(track.size() - 1),
+                          200 - 190 * track[i] / top);
+  }
+  return fmt::format("<polyline fill='none' stroke='{}' stroke-width='1.5' points='{}'/>", colour,
+                     points);
+}
+
+std::string Plot(const Diagnosis& diagnosis) {
+  double top = diagnosis.noise_floor;
+  for (double error : diagnosis.before_track) top = std::max(top, error);
+  for (double error : diagnosis.after_track) top = std::max(top, error);
+  if (top <= 0) return "";
+  const double floor = 200 - 190 * diagnosis.noise_floor / top;
+  return fmt::format(
+      "<svg viewBox='0 0 800 210' role='img'><line x1='0' x2='800' y1='{0:.1f}' y2='{0:.1f}' "
+      "stroke='#888' stroke-dasharray='4'/>{1}{2}</svg><p>Track error of held-out frames, one "
+      "after the other; the top is {3}. Red: before, blue: after, dashed: noise floor.</p>",
+      floor, Curve(diagnosis.before_track, top, "#c33"), Curve(diagnosis.after_track, top, "#25c"),
+      Millimetres(top));
+}
+
+}  // namespace
+
+std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
+  Json candidates = Json::array();
+  for (const Candidate& candidate : diagnosis.candidates) {
+    candidates.push_back(
+        {{"name", candidate.name},
+         {"score", candidate.score},
+         {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)}});
+  }
+  const Json report = {
+      {"noise_floor", diagnosis.noise_floor},
+      {"before", Pair(diagnosis.before)},
+      {"effects", EffectList(diagnosis.effects)},
+      {"after", Pair(diagnosis.after)},
+      {"gain",
+       {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
+      {"candidates", candidates},
+      {"unexplained", UnexplainedJson(diagnosis)}};
+  return report.dump(1) + "\n";
+}
+
+std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
+  std::string text = fmt::format("noise floor: {}\n", Millimetres(diagnosis.noise_floor));
+  text += fmt::format("before: fit {}, held out {}\n", Millimetres(diagnosis.before.fit),
+                      Millimetres(diagnosis.before.held));
+  for (const Candidate& candidate : diagnosis.candidates) {
+    if (!candidate.refit) continue;
+    text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
+                        candidate.name, 100 * candidate.score, Millimetres(candidate.refit->held),
+                        Interval(candidate.gain), candidate.gain.p);
+  }
+  for (const EffectValues& effect : diagnosis.effects) {
+    text += fmt::format("added: {} ({})\n", effect.name, DescribeParameters(effect));
+  }
+  text += fmt::format("after: fit {}, held out {}\n", Millimetres(diagnosis.after.fit),
+                      Millimetres(diagnosis.after.held));
+  return text + Verdict(diagnosis) + "\n";
+}
+
+std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& title) {
+  std::string page = fmt::format(
+      "<!DOCTYPE html><html lang='en'><meta charset='utf-8'><title>{0}</title><style>body{{font:"
+      "16px sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}td,th{{padding:.2em 1em .2em "
+      "0;text-align:left}}svg{{width:100%;border:1px solid #ccc}}</style><h1>{0}</h1><p>{1}.</p>",
+      title, Verdict(diagnosis));
+  page += fmt::format(
+      "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
+      "<tr><td>before</td><td>{}</td><td>{}</td></tr><tr><td>after</td><td>{}</td><td>{}</td></tr>"
+      "<tr><td>noise floor</td><td colspan='2'>{}</td></tr></table><p>{}.</p>",
+      Millimetres(diagnosis.before.fit), Millimetres(diagnosis.before.held),
+      Millimetres(diagnosis.after.fit), Millimetres(diagnosis.after.held),
+      Millimetres(diagnosis.noise_floor), Interval(diagnosis.gain));
+  page += Plot(diagnosis);
+  page += "<h2>Effects added</h2><ul>";
+  for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
+    const EffectValues& effect = diagnosis.effects[i];
+    page += fmt::format("<li><b>{}</b>: {}</li>", effect.name, DescribeParameters(effect));
+  }
+  page += diagnosis.effects.empty() ? "<li>none</li></ul>" : "</ul>";
+  page +=
+      "<h2>Candidates</h2><table><tr><th>effect</th><th>part of the misfit, linearised</th>"
+      "<th>held out, refitted</th><th>gain</th></tr>";
+  for (const Candidate& candidate : diagnosis.candidates) {
+    page += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>{}</td><td>{}</td></tr>",
+                        candidate.name, 100 * candidate.score,
+                        candidate.refit ? Millimetres(candidate.refit->held) : "",
+                        candidate.refit ? Interval(candidate.gain) : "");
+  }
+  return page + "</table></html>\n";
+}
+
+}  // namespace physpring

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all effects have in common: their adjoints inside the whole simulator, and that values of 0
+// change nothing.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/support/random_system.h"
+#include "tests/support/targeted_rollout.h"
+#include "twin/effects/effect_json.h"
+#include "twin/effects/registry.h"
+#include "twin/error.h"
+#include "twin/recorded_input.h"
+
+namespace physpring {
+namespace {
+
+// Values at which the effect acts strongly within the rollout below, and the step of differences
+// relative to a parameter's scale: short for effects whose forces have kinks.
+struct Case {
+  std::vector<double> values;
+  double step;
+};
+
+constexpr double kSmooth = 1e-3, kKinked = 1e-5;
+
+const std::map<std::string, Case>& Cases() {
+  static const std::map<std::string, Case> kCases = {
+      {"air_drag", {{0.3, 1, -2, 0.5}, kSmooth}},
+      {"gravity_direction", {{0.3, -0.2}, kSmooth}},
+      {"stiffening", {{30}, kSmooth}},
+      {"tension_only", {{0.7}, kKinked}},
+      {"yield", {{2e-3, 0.1}, kKinked}},
+      {"dry_friction", {{0.01}, kKinked}},
+      {"viscoelastic", {{0.5, 0.02}, kSmooth}},
+      {"bending", {{1e-3}, kSmooth}},
+      {"bending_damping", {{1e-5}, kSmooth}},
+      {"rest_bend",
+       {{1e-2, -2e-2, 1e-2, 0, 2e-2, 1e-2, -1e-2, 1e-2, -1e-2, 1e-2, 0, 2e-2, 1e-2, -1e-2, 0, 1e-2},
+        kSmooth}},
+      {"bending_friction", {{5e-3, 0.1}, kKinked}},
+      {"mass_distribution", {{0.1, 0.05, 0.02, -0.03, 0.3, -0.2, 0.1, 0.5}, kSmooth}},
+      {"tether", {{5, 0.1, 0.05, 0.02, -0.03, 0.1, 0.2, -0.1}, kSmooth}},
+      {"rest_length", {{0.1, -0.05, 0.03, 0.2, -0.1}, kSmooth}},
+      {"control_latency", {{0.013}, kSmooth}},
+      {"ground_contact", {{0.1, 0.1}, kKinked}},
+      {"stiffness_drift", {{1.5}, kSmooth}},
+  };
+  return kCases;
+}
+
+Case CaseOf(const Effect& effect) {
+  if (effect.name() != "uniform_force") return Cases().at(effect.name());
+  Case test{{0.0213}, kSmooth};
+  Random random(5);
+  while (static_cast<int>(test.values.size()) < effect.value_count()) {
+    test.values.push_back(random(-1, 1));
+  }
+  return test;
+}
+
+EffectValues Values(const Effect& effect, const std::vector<double>& values) {
+  return {effect.name(), Eigen::Map<const Eigen::VectorXd>(
+                             values.data(), static_cast<Eigen::Index>(values.size()))};
+}
+
+// A rollout of four frames of a rod, with controllers that move as recorded.
+class Effects : public testing::TestWithParam<const Effect*> {
+ protected:
+  Effects() : rollout(RandomRollout(4, 1)) {
+    rollout.system.order = Eigen::VectorXd::LinSpaced(27, 0, 0.5);
+    recording.fps = 1 / rollout.options.frame_time;
+    recording.controllers.push_back(rollout.frames[0].controllers_start);
+    for (const FrameInput& frame : rollout.frames) {
+      recording.controllers.push_back(frame.controllers_end);
+    }
+    if (GetParam()->name() == "ground_contact") {
+      rollout.environment.ground = Eigen::Vector4d(0, 0, 1, -0.085);
+      rollout.velocity.row(2).array() -= 1;
+      rollout.system.contact.restitution = 0.3;
+      rollout.system.contact.friction = 0.02;
+    }
+  }
+
+  void ReadFrames() {
+    for (std::size_t i = 0; i < rollout.frames.size(); ++i) {
+      rollout.frames[i] =
+          RecordedInput(recording, static_cast<int>(i) + 1, ControllerDelay(rollout.system));
+    }
+  }
+
+  TargetedRollout rollout;
+  Recording recording;
+};
+
+TEST_P(Effects, HasTheDerivativesThatDifferencesShow) {
+  const Case test = CaseOf(*GetParam());
+  rollout.system.effects = {Values(*GetParam(), test.values)};
+  ReadFrames();
+  const RolloutGradient gradient = Gradient<double>(rollout);
+  std::vector<CheckedVariable> variables;
+  Eigen::VectorXd& values = rollout.system.effects[0].values;
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : GetParam()->parameters()) {
+    const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
+    for (int n = 0; n < parameter.count; ++n, ++i) {
+      const double scale = logarithmic ? values[i] : parameter.scale;
+      variables.push_back(
+          {parameter.key, &values[i], test.step * scale, gradient.system.effects[0][i]});
+    }
+  }
+  const auto loss = [&] {
+    ReadFrames();
+    return Loss<double>(rollout);
+  };
+  const GradientReport report = CheckGradient(loss, variables);
+  EXPECT_TRUE(report.passed) << report.log;
+  EXPECT_GT(gradient.system.effects[0].norm(), 0);
+}
+
+TEST_P(Effects, KeepsTheOtherDerivativesRight) {
+  const Case test = CaseOf(*GetParam());
+  rollout.system.effects = {Values(*GetParam(), test.values)};
+  ReadFrames();
+  for (const GradientReport& report : CheckRollout(rollout, test.step)) {
+    EXPECT_TRUE(report.passed) << report.log;
+  }
+}
+
+TEST_P(Effects, ChangesNothingAtZero) {
+  const std::vector<Points> without = Simulate<double>(rollout);
+  rollout.system.effects = {
+      Values(*GetParam(), std::vector<double>(GetParam()->value_count(), 0.0))};
+  ReadFrames();
+  EXPECT_EQ(Simulate<double>(rollout).back(), without.back());
+}
+
+TEST_P(Effects, ChangesTheMotion) {
+  const std::vector<Points> without = Simulate<double>(rollout);
+  rollout.system.effects = {Values(*GetParam(), CaseOf(*GetParam()).values)};
+  ReadFrames();
+  EXPECT_GT((Simulate<double>(rollout).back() - without.back()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_P(Effects, StartsWithinItsBounds) {
+  for (const Eigen::VectorXd& start : GetParam()->Starts(rollout.system)) {
+    EXPECT_NO_THROW(ValidateEffect({GetParam()->name(), start}, "start"));
+  }
+}
+
+TEST_P(Effects, ComesBackFromJson) {
+  const EffectValues effect = Values(*GetParam(), CaseOf(*GetParam()).values);
+  const std::vector<EffectValues> read = EffectsFromJson(EffectsToJson({effect, effect}), "here");
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[1].name, effect.name);
+  EXPECT_EQ(read[1].values, effect.values);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Effects, testing::ValuesIn(AllEffects()),
+                         [](const auto& test) { return test.param->name(); });
+
+}  // namespace
+}  // namespace physpring

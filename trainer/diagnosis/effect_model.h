@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a diagnosis moves: an unconstrained vector, and the map from it to a spring-mass system with
+// effects. First the model's own parameters (parameters.h, times `scale`), then the values of the
+// effects, one after the other:
+//   even:         value = start + scale x, within the parameter's bounds
+//   logarithmic:  value = start exp(x), within the bounds
+// Zero is the base system with the effects at their start.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
+
+#include <vector>
+
+#include "trainer/parameters.h"
+#include "twin/effects/effect.h"
+
+namespace physpring {
+
+class EffectModel {
+ public:
+  // The base system of `own` must have no effects itself.
+  EffectModel(Parameters own, double scale, std::vector<EffectValues> start);
+
+  int size() const { return own_.size() + effect_size_; }
+  const Parameters& own() const { return own_; }
+  double scale() const { return scale_; }
+
+  SpringMassSystem Apply(const Eigen::VectorXd& x) const;
+
+  // d loss / d x, from the derivatives with respect to the system Apply(x).
+  Eigen::VectorXd Adjoint(const Eigen::VectorXd& x, const SpringMassSystem& system,
+                          const SystemGradient& gradient) const;
+
+ private:
+  struct Entry {
+    double low, high, scale;
+    bool logarithmic;
+  };
+  static double Value(const Entry& entry, double start, double x);
+
+  Parameters own_;
+  double scale_;
+  std::vector<EffectValues> start_;
+  std::vector<Entry> entries_;  // of all effects
+  int effect_size_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_

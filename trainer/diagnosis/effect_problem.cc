@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/effect_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trainer/parallel.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+using Use = SplitRecording::Use;
+
+// Calls visit(frame, point) for everything seen in frames of that use, in a fixed order.
+template <class Visit>
+void ForEachSeen(const SplitRecording& split, Use use, Visit visit) {
+  for (int frame = 1; frame < split.last(use); ++frame) {
+    if (split.use[static_cast<std::size_t>(frame)] != use) continue;
+    const Points& measured = split.recording->points[static_cast<std::size_t>(frame)];
+    for (int i = 0; i < measured.cols(); ++i) {
+      if (!std::isnan(measured(0, i))) visit(frame, i);
+    }
+  }
+}
+
+}  // namespace
+
+int SplitRecording::last(Use wanted) const {
+  const auto found = std::find(use.rbegin(), use.rend(), wanted);
+  return static_cast<int>(use.rend() - found);
+}
+
+EffectProblem::EffectProblem(EffectModel model, const std::vector<SplitRecording>& recordings,
+                             const Options& options)
+    : model_(std::move(model)),
+      recordings_(recordings),
+      options_(options),
+      substeps_(recordings.size(), 1),
+      offset_{0} {
+  for (const SplitRecording& split : recordings_) {
+    std::size_t seen = 0;
+    ForEachSeen(split, Use::kFit, [&](int, int) { ++seen; });
+    offset_.push_back(offset_.back() + 3 * seen);
+  }
+}
+
+bool EffectProblem::FixSubsteps(const Eigen::VectorXd& x) {
+  const StabilityBound bound = ComputeStabilityBound(model_.Apply(x));
+  for (std::size_t i = 0; i < recordings_.size(); ++i) {
+    const double fps = recordings_[i].recording->fps;
+    substeps_[i] = StableSubsteps(bound, 1 / fps, options_.safety);
+    if (substeps_[i] * fps > options_.most_rate) return false;
+  }
+  return true;
+}
+
+std::optional<Eigen::VectorXd> EffectProblem::RollOutAll(
+    const Eigen::VectorXd& x, bool fit_only,
+    std::vector<std::unique_ptr<Rollout>>* rollouts) const {
+  const SpringMassSystem system = model_.Apply(x);
+  Eigen::VectorXd residuals(offset_.back());
+  std::vector<char> diverged(recordings_.size(), 0);
+  if (rollouts) rollouts->resize(recordings_.size());
+  ParallelFor(static_cast<int>(recordings_.size()), options_.threads, [&](int i) {
+    const SplitRecording& split = recordings_[i];
+    const int fit = split.last(Use::kFit);
+    const int frames = fit_only ? fit : std::max(fit, split.last(Use::kHeld));
+    if (frames < 2) return;
+    RolloutOptions rollout_options;
+    rollout_options.controller_velocity = options_.controller_velocity;
+    rollout_options.substeps = substeps_[i];
+    rollout_options.growth_limit = std::numeric_limits<double>::infinity();
+    auto rollout = RollOut(system, {split.recording, frames}, rollout_options);
+    diverged[i] = rollout->diverged();
+    if (diverged[i]) return;
+    std::size_t row = offset_[i];
+    ForEachSeen(split, Use::kFit, [&](int frame, int point) {
+      residuals.segment<3>(row) =
+          rollout->positions()[frame].col(point) - split.recording->points[frame].col(point);
+      row += 3;
+    });
+    if (rollouts) (*rollouts)[i] = std::move(rollout);
+  });
+  if (std::any_of(diverged.begin(), diverged.end(), [](char d) { return d != 0; })) return {};
+  return residuals;
+}
+
+std::optional<Eigen::VectorXd> EffectProblem::Residuals(const Eigen::VectorXd& x) {
+  return RollOutAll(x, true, nullptr);
+}
+
+std::optional<Eigen::VectorXd> EffectProblem::Linearise(const Eigen::VectorXd& x) {
+  if (!FixSubsteps(x)) return {};
+  x_ = x;
+  auto residuals = RollOutAll(x, true, &rollouts_);
+  if (residuals) r_ = *residuals;
+  return residuals;
+}
+
+Eigen::VectorXd EffectProblem::JacobianTimes(const Eigen::VectorXd& v) {
+  const double step = options_.difference / std::max(1e-300, v.cwiseAbs().maxCoeff());
+  const auto moved = RollOutAll(x_ + step * v, true, nullptr);
+  if (!moved) return Eigen::VectorXd::Zero(r_.size());
+  return (*moved - r_) / step;
+}
+
+Eigen::VectorXd EffectProblem::JacobianTransposedTimes(const Eigen::VectorXd& u) {
+  const SpringMassSystem system = model_.Apply(x_);
+  std::vector<std::optional<RolloutAdjoint>> adjoints(recordings_.size());
+  ParallelFor(static_cast<int>(recordings_.size()), options_.threads, [&](int i) {
+    if (!rollouts_[i]) return;
+    std::vector<Points> bars(rollouts_[i]->positions().size());
+    for (Points& bar : bars) bar.setZero(3, system.node_count());
+    std::size_t row = offset_[i];
+    ForEachSeen(recordings_[i], Use::kFit, [&](int frame, int point) {
+      bars[frame].col(point) = u.segment<3>(row);
+      row += 3;
+    });
+    adjoints[i] = rollouts_[i]->Adjoint(bars);
+  });
+  SystemGradient sum(system);
+  for (const auto& adjoint : adjoints) {
+    if (adjoint) sum += adjoint->gradient;
+  }
+  return model_.Adjoint(x_, system, sum);
+}
+
+std::optional<std::vector<std::vector<Points>>> EffectProblem::Predict(
+    const Eigen::VectorXd& x) const {
+  std::vector<std::unique_ptr<Rollout>> rollouts;
+  if (!RollOutAll(x, false, &rollouts)) return {};
+  std::vector<std::vector<Points>> predicted;
+  for (const auto& rollout : rollouts) {
+    predicted.push_back(rollout ? rollout->positions() : std::vector<Points>());
+  }
+  return predicted;
+}
+
+FrameTrack TrackOf(const std::vector<SplitRecording>& recordings,
+                   const std::vector<std::vector<Points>>& predicted, Use use) {
+  FrameTrack track;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    std::vector<double> sum(recordings[i].use.size(), 0), seen(sum);
+    ForEachSeen(recordings[i], use, [&](int frame, int point) {
+      sum[frame] +=
+          (predicted[i][frame].col(point) - recordings[i].recording->points[frame].col(point))
+              .norm();
+      seen[frame] += 1;
+    });
+    for (std::size_t frame = 0; frame < sum.size(); ++frame) {
+      if (seen[frame] > 0) track.push_back(sum[frame] / seen[frame]);
+    }
+  }
+  return track;
+}
+
+double Mean(const FrameTrack& track) {
+  double sum = 0;
+  for (double error : track) sum += error;
+  return track.empty() ? std::numeric_limits<double>::quiet_NaN()
+                       : sum / static_cast<double>(track.size());
+}
+
+}  // namespace physpring

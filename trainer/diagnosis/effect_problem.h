@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fitting a model with effects to recordings as a least-squares problem, and judging it on frames
+// that are not fitted. Residuals: distances, along x, y and z, of predicted from measured points,
+// seen ones only [m].
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_PROBLEM_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_PROBLEM_H_
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "trainer/diagnosis/effect_model.h"
+#include "trainer/gauss_newton.h"
+#include "trainer/rollout.h"
+
+namespace physpring {
+
+// A recording with the use of each of its frames. Frame 0 has none: it is the start.
+struct SplitRecording {
+  enum class Use { kNone, kFit, kHeld };
+  const Recording* recording;
+  std::vector<Use> use;
+
+  int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
+};
+
+// Mean distance of predicted from measured points of each frame of one use, in order; frames in
+// which nothing was seen are left out.
+using FrameTrack = std::vector<double>;
+
+class EffectProblem : public LeastSquares {
+ public:
+  struct Options {
+    bool controller_velocity = true;
+    double safety = 0.7;       // sub-step as a part of the largest stable one
+    double most_rate = 10000;  // sub-steps a second; a stiffer system cannot be evaluated
+    double difference = 1e-5;  // longest entry of the step of J v; longer where contacts jump
+    int threads = 1;
+  };
+
+  EffectProblem(EffectModel model, const std::vector<SplitRecording>& recordings,
+                const Options& options);
+
+  const EffectModel& model() const { return model_; }
+
+  // The sub-steps that x needs, used from now on; false if that is too many.
+  bool FixSubsteps(const Eigen::VectorXd& x);
+
+  std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) override;
+  std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) override;
+  Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) override;
+  Eigen::VectorXd JacobianTransposedTimes(const Eigen::VectorXd& u) override;
+
+  // Predicted positions of all frames up to the last one in use, of each recording; nothing if a
+  // motion diverges.
+  std::optional<std::vector<std::vector<Points>>> Predict(const Eigen::VectorXd& x) const;
+
+ private:
+  std::optional<Eigen::VectorXd> RollOutAll(const Eigen::VectorXd& x, bool fit_only,
+                                            std::vector<std::unique_ptr<Rollout>>* rollouts) const;
+
+  EffectModel model_;
+  const std::vector<SplitRecording>& recordings_;
+  Options options_;
+  std::vector<int> substeps_;        // of each recording
+  std::vector<std::size_t> offset_;  // of each recording's residuals; the last one: their number
+  // the point of linearisation
+  Eigen::VectorXd x_, r_;
+  std::vector<std::unique_ptr<Rollout>> rollouts_;
+};
+
+// Track errors of predicted positions.
+FrameTrack TrackOf(const std::vector<SplitRecording>& recordings,
+                   const std::vector<std::vector<Points>>& predicted, SplitRecording::Use use);
+double Mean(const FrameTrack& track);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_PROBLEM_H_
