@@ -20,7 +20,7 @@ constexpr int kCommonSteps = 15;
 constexpr int kGaussNewtonSteps = 15;
 constexpr double kSlow = 0.99;  // a step that lowers the mean square by less gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end Gauss-Newton
-constexpr int kAdamSteps = 120;
+constexpr int kAdamSteps = 200;
 constexpr double kLearningRate = 0.03;  // of log-stiffnesses; others in proportion to their prior
 constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so much above the best
 
