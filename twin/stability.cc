@@ -25,16 +25,18 @@ Eigen::VectorXd ApplyLaplacian(const SpringMassSystem& system, const Eigen::Vect
   return result;
 }
 
-// Upper estimate of the largest eigenvalue of M^-1/2 L M^-1/2, L the Laplacian with weights w of
-// the springs, by Lanczos' method: the largest eigenvalue of the projection onto a Krylov space,
-// plus its residual.
-double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& weight) {
+// The largest eigenvalue that was found, and a bound of its error.
+struct Estimate {
+  double eigenvalue, residual;
+};
+
+// Of M^-1/2 L M^-1/2, L the Laplacian with weights w of the springs, by Lanczos' method from the
+// vector q: the largest eigenvalue of the projection onto a Krylov space, and its residual.
+Estimate Lanczos(const SpringMassSystem& system, const Eigen::VectorXd& weight, Eigen::VectorXd q) {
   const int nodes = system.node_count();
   const int steps = std::min(nodes, 80);
   const Eigen::VectorXd inverse_root = system.mass.cwiseSqrt().cwiseInverse();
-  // a start vector without symmetry, the same each time
-  Eigen::VectorXd q(nodes), previous = Eigen::VectorXd::Zero(nodes);
-  for (int i = 0; i < nodes; ++i) q[i] = 1 + std::sin(12.9898 * (i + 1) * (i + 1));
+  Eigen::VectorXd previous = Eigen::VectorXd::Zero(nodes);
   q.normalize();
   Eigen::VectorXd diagonal(steps), beside(steps);  // of the projection
   int size = 0;
@@ -55,7 +57,26 @@ double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& 
   projection.computeFromTridiagonal(diagonal.head(size), beside.head(size - 1));
   const double residual =
       beside[size - 1] * std::abs(projection.eigenvectors()(size - 1, size - 1));
-  return std::max(0.0, projection.eigenvalues()[size - 1] + residual);
+  return {projection.eigenvalues()[size - 1], residual};
+}
+
+// Upper estimate of the largest eigenvalue, from two start vectors, the same each time and without
+// symmetry: one spread evenly, and one where the diagonal is large, as the modes of a few nodes are
+// that uneven weights have at the top of the spectrum.
+double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& weight) {
+  const int nodes = system.node_count();
+  Eigen::VectorXd even(nodes), diagonal = Eigen::VectorXd::Zero(nodes);
+  for (int e = 0; e < system.spring_count(); ++e) {
+    for (int end : system.springs[e]) {
+      if (end < nodes) diagonal[end] += weight[e] / system.mass[end];
+    }
+  }
+  if (diagonal.isZero(0)) return 0;
+  for (int i = 0; i < nodes; ++i) even[i] = 1 + std::sin(12.9898 * (i + 1) * (i + 1));
+  const Estimate spread = Lanczos(system, weight, even);
+  const Estimate local = Lanczos(system, weight, even.cwiseProduct(diagonal.cwiseAbs2()));
+  const Estimate& larger = local.eigenvalue > spread.eigenvalue ? local : spread;
+  return larger.eigenvalue + larger.residual;
 }
 
 }  // namespace
