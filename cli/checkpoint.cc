@@ -19,15 +19,38 @@ constexpr const char* kFinished = "train/finished";
 
 Json NumberOrAuto(int number) { return number > 0 ? Json(number) : Json("auto"); }
 
+const char* ReductionName(TrainOptions::Reduction reduction) {
+  switch (reduction) {
+    case TrainOptions::Reduction::kLearned:
+      return "learned";
+    case TrainOptions::Reduction::kRandom:
+      return "random";
+    case TrainOptions::Reduction::kGramian:
+      return "gramian";
+    case TrainOptions::Reduction::kKMeans:
+      return "kmeans";
+  }
+  return "";
+}
+
 // Everything that the result depends on, but the seed, which has a place of its own. Not the number
 // of threads.
-std::string OptionsJson(const TrainOptions& options) {
+std::string OptionsJson(const TrainOptions& options, const std::string& from) {
   Json json;
   json["method"] = options.method == TrainOptions::Method::kFull ? "full" : "two-stage";
   json["optimizer"] = options.optimizer == TrainOptions::Optimizer::kAutomatic     ? "auto"
                       : options.optimizer == TrainOptions::Optimizer::kGaussNewton ? "gauss-newton"
                                                                                    : "adam";
-  json["levels"] = 1;
+  json["levels"] = options.levels;
+  if (options.levels > 1) {
+    json["ratios"] =
+        std::vector<double>(options.ratios.begin(), options.ratios.begin() + options.levels - 1);
+    json["reduction"] = ReductionName(options.reduction);
+    json["latent"] = options.network.latent;
+    json["network_epochs"] = options.network.epochs;
+    json["network_updates"] = options.network.updates;
+  }
+  if (!from.empty()) json["from"] = from;
   json["neighbours"] = options.neighbours.empty() ? Json("auto") : Json(options.neighbours);
   json["epochs"] = NumberOrAuto(options.epochs);
   json["substeps"] = NumberOrAuto(options.substeps);
@@ -61,13 +84,14 @@ bool Exists(const std::string& path) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options)
+Checkpoint::Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
+                       const std::string& from)
     : path_(path) {
   labels_.name = NameOfTwin(path);
   for (const Recording& recording : data.recordings) {
     labels_.trained_on.push_back({recording.name, recording.hash, recording.train_frames});
   }
-  labels_.options_json = OptionsJson(options);
+  labels_.options_json = OptionsJson(options, from);
   labels_.seed = options.seed;
 }
 

@@ -14,8 +14,10 @@ namespace physpring {
 
 class Checkpoint {
  public:
-  // Of the training on `data` with `options` that writes to `path`.
-  Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options);
+  // Of the training on `data` with `options` that writes to `path`. `from`: the file that level 0
+  // comes from; empty: it is fitted.
+  Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
+             const std::string& from);
 
   // Throws Error if a twin could not be written to the path, or if there is a file that would be
   // overwritten without `force`.

@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,13 +25,15 @@
 #include "trainer/fit_data.h"
 #include "trainer/make_fitter.h"
 #include "twin/error.h"
+#include "twin/predict.h"
 
 namespace physpring {
 namespace {
 
 struct Arguments {
   std::vector<std::string> recordings;
-  std::string output, log;
+  std::string output, log, from;
+  std::string reduction = "learned";
   std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
   TrainOptions options;  // without what is a word above
   bool resume = false, force = false;
@@ -37,6 +42,7 @@ struct Arguments {
 
 TrainOptions OptionsOf(const Arguments& arguments) {
   using Optimizer = TrainOptions::Optimizer;
+  using Reduction = TrainOptions::Reduction;
   const bool two_stage = arguments.method == "two-stage";
   TrainOptions options = arguments.options;
   options.method = two_stage ? TrainOptions::Method::kTwoStage : TrainOptions::Method::kFull;
@@ -45,6 +51,11 @@ TrainOptions OptionsOf(const Arguments& arguments) {
                                                       : Optimizer::kGaussNewton;
   options.single_precision = arguments.precision == "float";
   if (arguments.velocity != "auto") options.controller_velocity = arguments.velocity == "on";
+  options.reduction = std::map<std::string, Reduction>{{"learned", Reduction::kLearned},
+                                                       {"random", Reduction::kRandom},
+                                                       {"gramian", Reduction::kGramian},
+                                                       {"kmeans", Reduction::kKMeans}}
+                          .at(arguments.reduction);
   if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
 
   const auto expect = [](bool right, const char* flag, const char* what) {
@@ -54,6 +65,8 @@ TrainOptions OptionsOf(const Arguments& arguments) {
   expect(counts, "--neighbours", "takes counts or auto, not both");
   expect(!two_stage || options.neighbours.empty(), "--neighbours", "is chosen by two-stage itself");
   expect(!two_stage || arguments.optimizer == "auto", "--optimizer", "is of --method full");
+  expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
+         "needs one ratio for each level but level 0");
   expect(two_stage || !options.self_collision, "--self-collision", "is of --method two-stage");
   return options;
 }
@@ -79,12 +92,35 @@ void Warn(const std::vector<std::string>& warnings) {
   }
 }
 
+// A twin that was trained on the same recordings.
+Twin ReadLevel0(const std::string& path, const FitData& data, const std::string& output) {
+  Twin twin = ReadTwin(path);
+  std::error_code missing;
+  if (std::filesystem::equivalent(path, output, missing)) {
+    throw Error(fmt::format("{}: --from and --output are the same file", path));
+  }
+  ExpectSameObject(twin, data.recordings[0]);
+  for (const Recording& recording : data.recordings) {
+    const bool known = std::any_of(twin.trained_on.begin(), twin.trained_on.end(),
+                                   [&](const TrainedOn& t) { return t.hash == recording.hash; });
+    if (!known) {
+      throw Error(
+          fmt::format("{}: was not trained on recording {}; --from needs a twin of the same "
+                      "recordings",
+                      path, recording.name));
+    }
+  }
+  return twin;
+}
+
 void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
                  const std::string& status, double seconds) {
-  const TwinLevel& level = run.twin.levels[0];
-  fmt::print("{}: level 0 with {} nodes, {} springs, {:.4g} sub-steps a frame\n", output,
-             level.system.node_count(), level.system.spring_count(),
-             level.substeps_per_second / run.twin.fps);
+  for (std::size_t i = 0; i < run.twin.levels.size(); ++i) {
+    const TwinLevel& level = run.twin.levels[i];
+    fmt::print("{}: level {} with {} nodes, {} springs, {:.4g} sub-steps a frame\n", output, i,
+               level.system.node_count(), level.system.spring_count(),
+               level.substeps_per_second / run.twin.fps);
+  }
   fmt::print("{}\n", fit_error);
   if (!status.empty()) fmt::print("{}\n", status);
   fmt::print("time: {}", FormatDuration(seconds));
@@ -98,9 +134,11 @@ void Run(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const TrainOptions options = OptionsOf(arguments);
   const FitData data = ReadFitData(arguments.recordings);
-  const Checkpoint checkpoint(arguments.output, data, options);
+  std::optional<Twin> dense;
+  if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data, arguments.output);
+  const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
   checkpoint.ExpectWritable(arguments.resume || arguments.force);
-  const std::unique_ptr<Fitter> fitter = MakeFitter(data, options);
+  const std::unique_ptr<Fitter> fitter = MakeFitter(data, options, dense);
   if (arguments.resume) checkpoint.Resume(fitter.get());
   OpenLog(arguments.log, arguments.resume);
   for (const Recording& recording : data.recordings) Warn(recording.warnings);
@@ -120,24 +158,46 @@ void Run(const Arguments& arguments) {
   PrintReport(arguments.output, run, fit_error, fitter->Status(), elapsed.count());
 }
 
-CLI::Validator OneLevel() {
-  return CLI::Validator(
-      [](std::string& levels) {
-        return levels == "1"
-                   ? ""
-                   : fmt::format("only level 0 can be trained so far, not {} levels", levels);
-      },
-      "");
+void AddHierarchyOptions(CLI::App* command, Arguments* arguments) {
+  TrainOptions& options = arguments->options;
+  command->add_option("--levels", options.levels, "levels of the twin, level 0 included")
+      ->check(WholeNumberBetween(1, 10))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--ratios", options.ratios,
+                   "nodes of levels 1, 2, ... as parts of level 0's particles")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(NumberBetween(0, 1))
+      ->type_name("R[,R...]")
+      ->default_str("0.6,0.4,0.3");
+  AddChoice(command, "--reduction", &arguments->reduction,
+            {"learned", "random", "gramian", "kmeans"}, "how nodes are joined to coarser ones");
+  TrainOptions::Network& network = options.network;
+  command->add_option("--network-epochs", network.epochs, "of each level; 0: no corrections")
+      ->check(WholeNumberBetween(0, 10000))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--network-updates", network.updates, "of the network in an epoch (K_model)")
+      ->check(WholeNumberBetween(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--latent", network.latent, "features of a node in the network")
+      ->check(WholeNumberBetween(2, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--from", arguments->from,
+                   "take level 0 from this twin of the same recordings, instead of fitting it")
+      ->type_name("TWIN.npz");
 }
 
 void AddFitOptions(CLI::App* command, Arguments* arguments) {
   TrainOptions& options = arguments->options;
   AddChoice(command, "--method", &arguments->method, {"full", "two-stage"},
             "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
-  command->add_option("--levels", "levels of the twin; only 1 so far: the hierarchy is to come")
-      ->check(OneLevel())
-      ->type_name("N")
-      ->default_str("1");
+  AddHierarchyOptions(command, arguments);
   command
       ->add_option("--neighbours", options.neighbours,
                    "springs of a particle; of several the best on held-back frames (full)")

@@ -26,6 +26,22 @@ struct TrainOptions {
   bool self_collision = false;      // particles collide with each other (two-stage only)
   int threads = 1;
   std::uint64_t seed = 0;
+
+  // The hierarchy: `levels` in all, level l >= 1 with ratios[l - 1] of the nodes of level 0.
+  int levels = 1;
+  std::vector<double> ratios = {0.6, 0.4, 0.3};
+  enum class Reduction { kLearned, kRandom, kGramian, kKMeans };
+  Reduction reduction = Reduction::kLearned;
+
+  // The graph network; the paper's values.
+  struct Network {
+    int latent = 128;
+    int epochs = 20;  // of each level
+    int updates = 1;  // an epoch (the paper's K_model)
+    double learning_rate = 1e-3;
+    double decay = 0.9;  // of the learning rate, an epoch
+  };
+  Network network;
 };
 
 }  // namespace physpring

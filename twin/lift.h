@@ -25,6 +25,9 @@ class Lift {
   // `nodes` (3 x nodes, m). At level 0 bit for bit `nodes`.
   Points Apply(const Points& nodes) const;
 
+  // R_I of each node when the nodes are at `nodes`.
+  std::vector<Eigen::Matrix3d> Rotations(const Points& nodes) const;
+
   // d loss / d nodes (3 x nodes) from d loss / d Apply(nodes), the rotations' part included.
   Points Adjoint(const Points& nodes, const Points& particles_bar) const;
 
@@ -40,7 +43,6 @@ class Lift {
     Points from, to;
   };
   Neighbourhood NeighbourhoodOf(int node, const Points& nodes) const;
-  std::vector<Eigen::Matrix3d> Rotations(const Points& nodes) const;
 
   bool identity_;
   Points particles_start_, nodes_start_;

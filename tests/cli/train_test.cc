@@ -259,7 +259,10 @@ TEST_F(Train, RefusesBadUsage) {
     EXPECT_EQ(result.status, 2) << part;
     EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
   };
-  refused({"--levels", "4"}, "only level 0 can be trained so far, not 4 levels");
+  refused({"--levels", "0"}, "--levels: takes a whole number from 1 to 10, not '0'");
+  refused({"--levels", "5"}, "--ratios: needs one ratio for each level but level 0");
+  refused({"--levels", "2", "--ratios", "1.5"}, "--ratios: takes a number from 0 to 1");
+  refused({"--reduction", "best"}, "--reduction: takes learned or random or gramian or kmeans");
   refused({"--method", "three-stage"}, "--method: takes full or two-stage, not 'three-stage'");
   for (const char* epochs : {"-1", "0", "2.5", "ten", "3x", ""}) {
     refused({std::string("--epochs=") + epochs}, "--epochs");

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/level_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trainer/adam.h"
+#include "trainer/fit_model.h"
+#include "trainer/levenberg_marquardt.h"
+#include "trainer/lifted_loss.h"
+#include "trainer/lifted_problem.h"
+#include "trainer/network/level_network.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kMostRecordings = 4;  // that common factors are fitted to
+constexpr int kMostSpringRecordings = 12;
+constexpr int kCommonSteps = 8;
+constexpr int kPatience = 5;  // epochs without gain on held-back frames
+constexpr int kGaussNewtonSteps = 6;
+constexpr int kConjugateGradientSteps = 12;
+
+// Of a frame: never more than level 0 needs.
+int MostSubsteps(const TwinLevel& dense, double fps) {
+  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kFitSafety),
+                  static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
+}
+
+// Of points, from the mean square of their coordinates' residuals.
+double Millimetres(double mean_square) { return 1e3 * std::sqrt(3 * mean_square); }
+
+}  // namespace
+
+LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin& twin,
+                   const GraphNetwork& network, const Eigen::VectorXd& weights)
+    : data_(data),
+      options_(options),
+      twin_(twin),
+      level_(static_cast<int>(twin.levels.size()) - 1),
+      most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
+      held_back_(HoldBack(data, kMostRecordings)),
+      network_(network),
+      common_(Eigen::VectorXd::Zero(CommonParameters().size())),
+      weights_(weights),
+      best_weights_(weights) {}
+
+LiftedMotion::Options LevelFit::MotionOptions(int threads) const {
+  LiftedMotion::Options motion;
+  motion.rollout.single_precision = options_.single_precision;
+  motion.rollout.controller_velocity = twin_.controller_velocity;
+  motion.rollout.substeps = options_.substeps;
+  motion.safety = kFitSafety;
+  motion.most_substeps = most_substeps_;
+  motion.threads = threads;
+  return motion;
+}
+
+Parameters LevelFit::CommonParameters() const {
+  return CommonFactors(twin_.levels[level_].system, data_.recordings[0]);
+}
+
+Parameters LevelFit::SpringParameters() const {
+  return SpringFactors(CorrectedSystem(best_weights_), data_.recordings[0]);
+}
+
+// The common factors and the network's corrections.
+SpringMassSystem LevelFit::CorrectedSystem(const Eigen::VectorXd& weights) const {
+  const SpringMassSystem base = CommonParameters().Apply(common_);
+  if (options_.network.epochs == 0) return base;
+  return LevelNetwork(network_, twin_, base, weights).corrected();
+}
+
+void LevelFit::StepCommon() {
+  const Parameters parameters = CommonParameters();
+  // the differences run in parallel
+  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostRecordings), MotionOptions(1));
+  LevenbergMarquardtOptions options;
+  options.threads = options_.threads;
+  options.difference = HasGround() ? 1e-2 : 1e-3;
+  LevenbergMarquardtState state{common_, damping_, mean_square_, false};
+  state = LevenbergMarquardtStep(
+      [&](const Eigen::VectorXd& x) { return LiftedProblem(parameters, motion, 0).Residuals(x); },
+      state, options);
+  common_ = state.x;
+  damping_ = state.damping;
+  mean_square_ = state.mean_square > 0 ? state.mean_square
+                                       : std::numeric_limits<double>::infinity();  // it diverges
+  status_ = fmt::format("level {}, common factors: {:.3f} mm", level_, Millimetres(mean_square_));
+  if (++iteration_ < kCommonSteps && !state.converged) return;
+  if (options_.network.epochs > 0) {
+    BeginNetwork();
+  } else {
+    BeginSprings();
+  }
+}
+
+void LevelFit::BeginNetwork() {
+  stage_ = Stage::kNetwork;
+  iteration_ = best_iteration_ = 0;
+  best_score_ = std::numeric_limits<double>::infinity();
+  rate_ = options_.network.learning_rate;
+  adam_mean_ = adam_mean_square_ = Eigen::VectorXd::Zero(weights_.size());
+}
+
+void LevelFit::BeginSprings() {
+  stage_ = Stage::kSprings;
+  iteration_ = 0;
+  damping_ = 1e-3;
+  springs_ = Eigen::VectorXd::Zero(SpringParameters().size());
+}
+
+// The mean track error of the scored frames, m; infinite where the motion diverges.
+double LevelFit::HeldBackError(const SpringMassSystem& system) const {
+  std::vector<Episode> episodes;
+  for (const ScoredFrames& scored : held_back_.scored) {
+    episodes.push_back({scored.recording, scored.last});
+  }
+  const LiftedMotion motion(twin_, level_, episodes, MotionOptions(options_.threads));
+  const auto moved = motion.Run(system, motion.Substeps(system));
+  if (!moved) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  for (std::size_t e = 0; e < episodes.size(); ++e) {
+    const ScoredFrames& scored = held_back_.scored[e];
+    sum += MeanTrackError(moved->particles[e], *scored.recording, scored.first, scored.last)
+               .value_or(0);
+  }
+  return sum / static_cast<double>(episodes.size());
+}
+
+// One update of the network's weights by the loss of the fit frames that are not held back.
+void LevelFit::StepNetwork() {
+  const LevelNetwork network(network_, twin_, CommonParameters().Apply(common_), weights_);
+  const SpringMassSystem& system = network.corrected();
+  const double score = HeldBackError(system);
+  if (score < best_score_) {
+    best_score_ = score;
+    best_weights_ = weights_;
+    best_iteration_ = iteration_;
+  }
+  status_ = fmt::format("level {}, network: {:.3f} mm on held-back frames", level_, 1e3 * score);
+  const LiftedMotion motion(twin_, level_, held_back_.fit, MotionOptions(options_.threads));
+  const std::optional<LiftedLoss> loss = ComputeLiftedLoss(motion, system);
+  const bool worse = iteration_ - best_iteration_ >= kPatience * options_.network.updates;
+  if (worse || iteration_ >= options_.network.epochs * options_.network.updates) {
+    weights_ = best_weights_;
+    BeginSprings();
+    return;
+  }
+  ++iteration_;
+  if (!loss) {  // too far: back to the best weights, and on in shorter steps
+    weights_ = best_weights_;
+    rate_ /= 4;
+    return;
+  }
+  const Eigen::VectorXd weights_bar = network.Adjoint(loss->gradient);
+  Adam adam(weights_.size());
+  adam.steps = iteration_ - 1;
+  adam.mean = adam_mean_;
+  adam.mean_square = adam_mean_square_;
+  const int epoch = (iteration_ - 1) / options_.network.updates;
+  const double rate = rate_ * std::pow(options_.network.decay, epoch);
+  adam.Step(weights_bar, Eigen::VectorXd::Constant(weights_.size(), rate), &weights_);
+  adam_mean_ = adam.mean;
+  adam_mean_square_ = adam.mean_square;
+}
+
+void LevelFit::StepSprings() {
+  const Parameters parameters = SpringParameters();
+  LiftedMotion::Options motion_options = MotionOptions(options_.threads);
+  motion_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
+  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostSpringRecordings),
+                            motion_options);
+  LiftedProblem problem(parameters, motion, HasGround() ? 1e-3 : 1e-5);
+  const GaussNewtonState before{springs_, damping_, mean_square_, false};
+  GaussNewtonOptions options = SpringPrior(parameters);
+  options.conjugate_gradient_steps = kConjugateGradientSteps;
+  const GaussNewtonState after = GaussNewtonStep(&problem, before, options);
+  springs_ = after.x;
+  damping_ = after.damping;
+  mean_square_ = after.mean_square;
+  status_ = fmt::format("level {}, single springs: {:.3f} mm", level_, Millimetres(mean_square_));
+  const bool slow = iteration_ > 0 && after.mean_square > 0.99 * before.mean_square;
+  if (++iteration_ >= kGaussNewtonSteps || after.converged || slow) stage_ = Stage::kDone;
+}
+
+bool LevelFit::Step() {
+  switch (stage_) {
+    case Stage::kCommon:
+      StepCommon();
+      return true;
+    case Stage::kNetwork:
+      StepNetwork();
+      return true;
+    case Stage::kSprings:
+      StepSprings();
+      return true;
+    case Stage::kDone:
+      return false;
+  }
+  return false;
+}
+
+std::string LevelFit::Part() const {
+  switch (stage_) {
+    case Stage::kCommon:
+      return "common factors of coarse levels";
+    case Stage::kNetwork:
+      return "network";
+    case Stage::kSprings:
+    case Stage::kDone:
+      return "single springs of coarse levels";
+  }
+  return "";
+}
+
+double LevelFit::Progress() const {
+  switch (stage_) {
+    case Stage::kCommon:
+      return 0.2 * iteration_ / kCommonSteps;
+    case Stage::kNetwork:
+      return 0.2 + 0.2 * iteration_ / (options_.network.epochs * options_.network.updates);
+    case Stage::kSprings:
+      return 0.4 + 0.6 * iteration_ / kGaussNewtonSteps;
+    case Stage::kDone:
+      return 1;
+  }
+  return 0;
+}
+
+StateArrays LevelFit::Save() const {
+  Eigen::VectorXd scalars(4);
+  scalars << damping_, mean_square_, best_score_, rate_;
+  StateArrays arrays = {{"train/level/counters",
+                         StoreCounters({static_cast<int>(stage_), iteration_, best_iteration_})},
+                        {"train/level/scalars", StoreVector(scalars)},
+                        {"train/level/common", StoreVector(common_)},
+                        {"train/level/springs", StoreVector(springs_)},
+                        {"train/level/weights", StoreVector(weights_)},
+                        {"train/level/best_weights", StoreVector(best_weights_)}};
+  if (stage_ == Stage::kNetwork) {
+    arrays["train/level/adam_mean"] = StoreVector(adam_mean_);
+    arrays["train/level/adam_mean_square"] = StoreVector(adam_mean_square_);
+  }
+  return arrays;
+}
+
+void LevelFit::Load(const StateArrays& state) {
+  const std::vector<int> counters = LoadCounters(state, "level/counters", 3);
+  stage_ = static_cast<Stage>(counters[0]);
+  iteration_ = counters[1];
+  best_iteration_ = counters[2];
+  const Eigen::VectorXd scalars = LoadVector(state, "level/scalars", 4);
+  damping_ = scalars[0];
+  mean_square_ = scalars[1];
+  best_score_ = scalars[2];
+  rate_ = scalars[3];
+  common_ = LoadVector(state, "level/common", common_.size());
+  weights_ = LoadVector(state, "level/weights", weights_.size());
+  best_weights_ = LoadVector(state, "level/best_weights", weights_.size());
+  if (stage_ == Stage::kNetwork) {
+    adam_mean_ = LoadVector(state, "level/adam_mean", weights_.size());
+    adam_mean_square_ = LoadVector(state, "level/adam_mean_square", weights_.size());
+  }
+  if (stage_ == Stage::kSprings || stage_ == Stage::kDone) {
+    springs_ = LoadVector(state, "level/springs", SpringParameters().size());
+  }
+}
+
+SpringMassSystem LevelFit::System() const {
+  switch (stage_) {
+    case Stage::kCommon:
+      return CommonParameters().Apply(common_);
+    case Stage::kNetwork:
+      return CorrectedSystem(best_weights_);
+    case Stage::kSprings:
+    case Stage::kDone:
+      return SpringParameters().Apply(springs_);
+  }
+  return twin_.levels[level_].system;
+}
+
+int LevelFit::SubstepsPerSecond() const {
+  const double fps = data_.recordings[0].fps;
+  const int substeps = options_.substeps > 0
+                           ? options_.substeps
+                           : StableSubsteps(ComputeStabilityBound(System()), 1 / fps, kFitSafety);
+  return static_cast<int>(std::ceil(substeps * fps));
+}
+
+}  // namespace physpring

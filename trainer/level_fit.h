@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fit of the parameters of a coarse level, whose topology, masses and first values are a
+// Galerkin projection, to the measured points through the lift, in two stages:
+//   common   the same few factors for all springs (parameters.h), by Levenberg-Marquardt
+//   springs  every spring's own stiffness, dashpot and rest length, by Gauss-Newton
+#ifndef PHYSPRING_TRAINER_LEVEL_FIT_H_
+#define PHYSPRING_TRAINER_LEVEL_FIT_H_
+
+#include <string>
+
+#include "trainer/fitter.h"
+#include "trainer/gauss_newton.h"
+#include "trainer/held_back.h"
+#include "trainer/lifted_motion.h"
+#include "trainer/network/graph_network.h"
+#include "trainer/parameters.h"
+#include "trainer/state_arrays.h"
+#include "trainer/train_options.h"
+
+namespace physpring {
+
+class LevelFit {
+ public:
+  // Fits the last level of `twin`, with a network of these weights; data and network must outlive
+  // this.
+  LevelFit(const FitData& data, const TrainOptions& options, const Twin& twin,
+           const GraphNetwork& network, const Eigen::VectorXd& weights);
+
+  // As Fitter's.
+  bool Step();
+  double Progress() const;
+  std::string Part() const;
+  const std::string& Status() const { return status_; }
+  StateArrays Save() const;
+  void Load(const StateArrays& state);
+
+  // The level as fitted so far.
+  SpringMassSystem System() const;
+  int SubstepsPerSecond() const;
+  const Eigen::VectorXd& weights() const { return best_weights_; }
+  // Whether the common factors are fitted, and the mean square of the residuals then, m^2.
+  bool common_done() const { return stage_ != Stage::kCommon; }
+  double mean_square() const { return mean_square_; }
+
+ private:
+  enum class Stage { kCommon, kNetwork, kSprings, kDone };
+
+  bool HasGround() const { return data_.recordings[0].ground.has_value(); }
+  LiftedMotion::Options MotionOptions(int threads) const;
+  Parameters CommonParameters() const;
+  Parameters SpringParameters() const;
+  SpringMassSystem CorrectedSystem(const Eigen::VectorXd& weights) const;
+  double HeldBackError(const SpringMassSystem& system) const;
+  void BeginNetwork();
+  void BeginSprings();
+  void StepCommon();
+  void StepNetwork();
+  void StepSprings();
+
+  const FitData& data_;
+  TrainOptions options_;
+  Twin twin_;
+  int level_;
+  int most_substeps_;  // a frame
+  HeldBack held_back_;
+  const GraphNetwork& network_;
+
+  // Everything that the next step depends on, besides data, options and the twin.
+  Stage stage_ = Stage::kCommon;
+  int iteration_ = 0;  // of the stage
+  double damping_ = 1e-2;
+  double mean_square_ = 0;  // of the residuals
+  Eigen::VectorXd common_, springs_;
+  Eigen::VectorXd weights_, adam_mean_, adam_mean_square_;
+  Eigen::VectorXd best_weights_;  // on held-back frames ...
+  double best_score_ = 0;         // ... their track error, m
+  int best_iteration_ = 0;
+  double rate_ = 0;  // of learning, at the first epoch
+  std::string status_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_LEVEL_FIT_H_

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/reduction/baselines.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "twin/neighbours.h"
+
+namespace physpring {
+namespace {
+
+// Uniform in [0, 1), the same with every standard library.
+double Uniform(std::mt19937_64* random) { return static_cast<double>((*random)() >> 11) * 0x1p-53; }
+
+// All nodes in random order (Fisher-Yates).
+std::vector<int> Shuffled(int nodes, std::mt19937_64* random) {
+  std::vector<int> order(nodes);
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = nodes - 1; i > 0; --i) {
+    std::swap(order[i], order[static_cast<int>(Uniform(random) * (i + 1))]);
+  }
+  return order;
+}
+
+// The first `count` of `order`, after the first one of each part of the graph.
+std::vector<int> FirstOfEachPartThenOthers(const SpringGraph& graph, const std::vector<int>& order,
+                                           int count) {
+  std::vector<int> chosen, others;
+  std::set<int> parts;
+  for (int node : order) {
+    (parts.insert(graph.part[node]).second ? chosen : others).push_back(node);
+  }
+  const int missing = count - static_cast<int>(chosen.size());
+  chosen.insert(chosen.end(), others.begin(), others.begin() + missing);
+  return chosen;
+}
+
+// k-means++: each next centre is drawn with a probability in proportion to the squared distance
+// from the ones there are.
+Points SpreadCentres(const Points& points, int count, std::mt19937_64* random) {
+  Points centres(3, count);
+  centres.col(0) = points.col(static_cast<int>(Uniform(random) * points.cols()));
+  Eigen::VectorXd squared =
+      Eigen::VectorXd::Constant(points.cols(), std::numeric_limits<double>::infinity());
+  for (int k = 1; k < count; ++k) {
+    const Eigen::VectorXd to_last =
+        (points.colwise() - centres.col(k - 1)).colwise().squaredNorm().transpose();
+    squared = squared.cwiseMin(to_last);
+    double left = Uniform(random) * squared.sum();
+    int drawn = 0;
+    while (drawn + 1 < points.cols() && (left -= squared[drawn]) >= 0) ++drawn;
+    centres.col(k) = points.col(drawn);
+  }
+  return centres;
+}
+
+std::vector<int> NearestCentres(const Points& points, const Points& centres) {
+  const NeighbourSearch search(centres);
+  std::vector<int> nearest(points.cols());
+  for (int i = 0; i < points.cols(); ++i) nearest[i] = search.Nearest(points.col(i), 1)[0].index;
+  return nearest;
+}
+
+// Lloyd's iteration. A centre that loses all its points stays where it is.
+Points MoveCentres(const Points& points, Points centres) {
+  constexpr int kMostIterations = 100;
+  std::vector<int> nearest;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    const std::vector<int> before = std::move(nearest);
+    nearest = NearestCentres(points, centres);
+    if (nearest == before) break;
+    Points sum = Points::Zero(3, centres.cols());
+    Eigen::VectorXd count = Eigen::VectorXd::Zero(centres.cols());
+    for (int i = 0; i < points.cols(); ++i) {
+      sum.col(nearest[i]) += points.col(i);
+      ++count[nearest[i]];
+    }
+    for (int k = 0; k < centres.cols(); ++k) {
+      if (count[k] > 0) centres.col(k) = sum.col(k) / count[k];
+    }
+  }
+  return centres;
+}
+
+}  // namespace
+
+Assignment RandomAssignment(const SpringMassSystem& system, int nodes, std::uint64_t seed) {
+  const SpringGraph graph(system);
+  std::mt19937_64 random(seed);
+  const std::vector<int> order = Shuffled(graph.node_count(), &random);
+  return GrowFromRoots(graph, FirstOfEachPartThenOthers(graph, order, ClusterBudget(graph, nodes)));
+}
+
+Assignment KMeansAssignment(const SpringMassSystem& system, int nodes, std::uint64_t seed) {
+  const SpringGraph graph(system);
+  const int count = ClusterBudget(graph, nodes);
+  const Points points = system.position.leftCols(system.node_count());
+  std::mt19937_64 random(seed);
+  const Points centres = MoveCentres(points, SpreadCentres(points, count, &random));
+
+  // the nodes nearest to the centres first, then any others
+  const NeighbourSearch search(points);
+  std::vector<int> order;
+  std::vector<char> taken(points.cols(), 0);
+  const auto take = [&](int node) {
+    if (!taken[node]) order.push_back(node);
+    taken[node] = 1;
+  };
+  for (int k = 0; k < count; ++k) take(search.Nearest(centres.col(k), 1)[0].index);
+  for (int node : Shuffled(static_cast<int>(points.cols()), &random)) take(node);
+  return GrowFromRoots(graph, FirstOfEachPartThenOthers(graph, order, count),
+                       NearestCentres(points, centres));
+}
+
+}  // namespace physpring

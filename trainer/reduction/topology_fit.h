@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learns an assignment of the last level of a twin: trains the graph network's encoder so that
+// Neural-CLASP (neural_clasp.h) on its latent features chooses clusters that can follow level 0's
+// motion of the fit frames. The temperature falls from 1 to 0.1 in equal factors. The clusters of
+// least error, among all that were drawn and the ones without noise at the end, are candidates.
+#ifndef PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
+#define PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trainer/fitter.h"
+#include "trainer/network/graph_network.h"
+#include "trainer/reduction/neural_clasp.h"
+#include "trainer/state_arrays.h"
+#include "trainer/train_options.h"
+
+namespace physpring {
+
+class TopologyFit {
+ public:
+  // Starts from `weights`; data and network must outlive this. `nodes`: of the new level.
+  TopologyFit(const FitData& data, const TrainOptions& options, const Twin& twin,
+              const GraphNetwork& network, const Eigen::VectorXd& weights, int nodes,
+              const Eigen::Vector3d& up);
+
+  // As Fitter's.
+  bool Step();
+  double Progress() const;
+  const std::string& Status() const { return status_; }
+  StateArrays Save() const;
+  void Load(const StateArrays& state);
+
+  // The best assignments so far, all different, and the weights.
+  const std::vector<Assignment>& candidates() const { return candidates_; }
+  const Eigen::VectorXd& weights() const { return weights_; }
+
+ private:
+  double Temperature() const;
+  void Consider(const Assignment& assignment, double error);
+
+  TrainOptions options_;
+  Twin twin_;
+  const GraphNetwork& network_;
+  int nodes_;
+  ProjectionLoss loss_;
+
+  // Everything that the next step depends on, besides the above.
+  int iteration_ = 0;
+  Eigen::VectorXd weights_, adam_mean_, adam_mean_square_;
+  std::vector<Assignment> candidates_;  // least error first ...
+  std::vector<double> errors_;          // ... their errors, m
+  std::string status_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
