@@ -14,6 +14,7 @@ void AddEvalCommand(CLI::App& app);
 void AddExportCommand(CLI::App& app);
 void AddDiagnoseCommand(CLI::App& app);
 void AddInfoCommand(CLI::App& app);
+void AddInteriorCommand(CLI::App& app);
 void AddDoctorCommand(CLI::App& app);
 
 }  // namespace physpring

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   physpring::AddExportCommand(app);
   physpring::AddDiagnoseCommand(app);
   physpring::AddInfoCommand(app);
+  physpring::AddInteriorCommand(app);
   physpring::AddDoctorCommand(app);
   try {
     app.parse(argc, argv);

@@ -68,23 +68,35 @@ void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
   }
 }
 
-// Which effects MuJoCo's own features carry, and how well.
+// What stands for an effect in MuJoCo.
+EffectMjcf CarrierOf(const EffectValues& values, const LevelPlan& plan) {
+  EffectMjcf mjcf = GetEffect(values.name).Mjcf(values.values, plan.system());
+  if (mjcf.carrier == EffectMjcf::Carrier::kTendon && plan.springs != SpringKind::kTendon) {
+    mjcf = {EffectMjcf::Carrier::kPlugin, {}, {}, "only tendons carry it"};
+  }
+  return mjcf;
+}
+
+// Forces of effects are the plugin's if the springs are; else MuJoCo's own features carry what
+// they can.
 void PlanEffects(LevelPlan* plan) {
-  using Carrier = EffectMjcf::Carrier;
   const SpringMassSystem& trained = plan->twin->levels[plan->level].system;
   plan->setting = ApplyEffects(trained, plan->twin->gravity);
   for (const EffectValues& values : trained.effects) {
-    EffectMjcf effect = GetEffect(values.name).Mjcf(values.values, plan->system());
-    if (effect.carrier == Carrier::kTendon && plan->springs != SpringKind::kTendon) {
-      effect = {Carrier::kPlugin, {}, {}, "only tendons carry it"};
+    const bool has_force =
+        GetEffect(values.name).MakeForce(plan->system(), values.values) != nullptr;
+    if (has_force && plan->springs == SpringKind::kPlugin) {
+      plan->plugin_effects.push_back(values);
+      continue;
     }
-    const bool missing = effect.carrier == Carrier::kPlugin;
-    if (missing || !effect.difference.empty()) {
+    EffectMjcf mjcf = CarrierOf(values, *plan);
+    const bool missing = mjcf.carrier == EffectMjcf::Carrier::kPlugin;
+    if (missing || !mjcf.difference.empty()) {
       plan->differences.push_back(fmt::format("effect {} is {}: {}", values.name,
                                               missing ? "left out" : "approximate",
-                                              effect.difference));
+                                              mjcf.difference));
     }
-    plan->effects.push_back(std::move(effect));
+    plan->effects.push_back(std::move(mjcf));
   }
 }
 

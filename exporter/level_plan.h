@@ -27,8 +27,9 @@ struct LevelPlan {
 
   // The level as its effects change it, and what carries those effects in MuJoCo.
   Setting setting;
-  std::vector<EffectMjcf> effects;
-  std::vector<std::string> differences;  // from the trained level, in words
+  std::vector<EffectMjcf> effects;           // by MuJoCo's own features
+  std::vector<EffectValues> plugin_effects;  // by the plugin
+  std::vector<std::string> differences;      // from the trained level, in words
 
   const SpringMassSystem& system() const { return setting.system; }
   bool NeedsPlugin() const {

@@ -26,17 +26,6 @@ std::string ShortNumbers(const Values& values) {
   return text;
 }
 
-void ExpectSamePlace(const Points& mesh, const Points& nodes, const std::string& file) {
-  const Eigen::Vector3d mesh_low = mesh.rowwise().minCoeff(), mesh_high = mesh.rowwise().maxCoeff();
-  const Eigen::Vector3d low = nodes.rowwise().minCoeff(), high = nodes.rowwise().maxCoeff();
-  if ((mesh_low.array() <= high.array()).all() && (mesh_high.array() >= low.array()).all()) return;
-  throw Error(fmt::format(
-      "{}: lies from ({:.3g}) to ({:.3g}), the twin from ({:.3g}) to ({:.3g}); a mesh must be in "
-      "the coordinates of the recording, in metres",
-      file, fmt::join(mesh_low, ", "), fmt::join(mesh_high, ", "), fmt::join(low, ", "),
-      fmt::join(high, ", ")));
-}
-
 // Nodes along the rod: a node's place is the mean of its members'.
 std::vector<int> NodesAlongRod(const LevelPlan& plan) {
   const int count = plan.system().node_count();
@@ -100,7 +89,7 @@ Picture MakePicture(const Twin& twin, const std::string& mesh_file) {
   Picture picture;
   if (!mesh_file.empty()) {
     picture.mesh = ReadMesh(mesh_file);
-    ExpectSamePlace(picture.mesh.vertices, nodes, mesh_file);
+    ExpectSamePlace(picture.mesh, nodes, mesh_file);
     return picture;
   }
   const double spacing = Spacing(nodes), contact_radius = system.contact_radius.mean();

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exporter/plugin_instance.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
+
+#include "twin/effects/effect_json.h"
 
 namespace physpring {
 namespace {
@@ -17,18 +20,30 @@ std::string Compact(const Eigen::VectorXd& values) {
   return equal ? Number(values[0]) : Numbers(values);
 }
 
+// The ends of each spring; of those between nodes only, if `nodes_only`.
+std::string SpringEnds(const SpringMassSystem& system, bool nodes_only) {
+  std::vector<int> ends;
+  for (const auto& [a, b] : system.springs) {
+    if (nodes_only && std::max(a, b) >= system.node_count()) continue;
+    ends.insert(ends.end(), {a, b});
+  }
+  return Numbers(ends);
+}
+
 void AddSpringKeys(const LevelPlan& plan, XmlElement* instance) {
   const SpringMassSystem& system = plan.system();
-  std::vector<int> ends;
-  for (const auto& [a, b] : system.springs) ends.insert(ends.end(), {a, b});
   AddConfig(instance, "nodes", std::to_string(system.node_count()));
   AddConfig(instance, "controllers", std::to_string(system.controllers));
-  AddConfig(instance, "springs", Numbers(ends));
+  AddConfig(instance, "springs", SpringEnds(system, false));
   AddConfig(instance, "stiffness", Compact(system.stiffness));
   AddConfig(instance, "rest_length", Compact(system.rest_length));
   AddConfig(instance, "dashpot", Compact(system.dashpot));
   AddConfig(instance, "drag", Number(system.drag));
   AddConfig(instance, "substep", Number(plan.substep));
+  if (!plan.plugin_effects.empty()) {
+    AddConfig(instance, "effects", EffectsToJson(plan.plugin_effects));
+  }
+  if (system.order.size() > 0) AddConfig(instance, "order", Numbers(system.order));
   AddConfig(instance, "controller_velocity", plan.twin->controller_velocity ? "1" : "0");
 }
 
@@ -51,7 +66,12 @@ void AddPluginInstance(const LevelPlan& plan, XmlElement* mujoco) {
       AddElement(AddElement(mujoco, "extension"), "plugin",
                  {{"plugin", springs ? "physpring.springs" : "physpring.contact"}});
   XmlElement* instance = AddElement(plugin, "instance", {{"name", plan.name}});
-  if (springs) AddSpringKeys(plan, instance);
+  if (springs) {
+    AddSpringKeys(plan, instance);
+  } else if (plan.system().contact.collision_distance > 0) {
+    // particles that a spring joins never collide
+    AddConfig(instance, "springs", SpringEnds(plan.system(), true));
+  }
   if (plan.contact == ContactKind::kPlugin) AddContactKeys(plan, instance);
 }
 

@@ -80,7 +80,8 @@ void AddSurroundings(const Extent& extent, XmlElement* mujoco) {
   AddElement(worldbody, "light",
              {{"pos", Numbers(extent.centre + 3 * extent.size * extent.up)},
               {"dir", Numbers(-extent.up)},
-              {"type", "directional"}});
+              {"cutoff", "60"},
+              {"exponent", "1"}});
   AddElement(worldbody, "geom",
              {{"name", "floor"},
               {"type", "plane"},

@@ -258,7 +258,7 @@ TEST(ExportScene, AMeshMustBeWhereTheTwinIs) {
   } catch (const Error& error) {
     EXPECT_EQ(error.what(),
               options.mesh +
-                  ": lies from (0, 0, 5) to (0.08, 0.06, 5), the twin from (0, 0, 0) to (0.08, "
+                  ": lies from (0, 0, 5) to (0.08, 0.06, 5), the points from (0, 0, 0) to (0.08, "
                   "0.06, 0.02); a mesh must be in the coordinates of the recording, in metres");
   }
 }

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring interior: a recording and a mesh of its object -> the recording with particles inside.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/option_values.h"
+#include "exporter/mesh_file.h"
+#include "exporter/mesh_interior.h"
+#include "twin/error.h"
+#include "twin/recording.h"
+
+namespace physpring {
+namespace {
+
+struct Arguments {
+  std::string recording, mesh, output;
+  double spacing = 0.01;
+};
+
+// Nobody knows the rest positions or arc lengths of new particles.
+void ExpectPlain(const Recording& recording, const std::string& path) {
+  const char* array = recording.interior_count() > 0 ? "interior"
+                      : recording.rest_given         ? "rest"
+                      : recording.order.size() > 0   ? "order"
+                                                     : nullptr;
+  if (!array) return;
+  throw Error(
+      fmt::format("{}: has an array '{}'; particles can only be added without one", path, array));
+}
+
+// The particles start at rest.
+void AddInterior(const Points& interior, Recording* recording) {
+  const int points = recording->point_count(), added = static_cast<int>(interior.cols());
+  Points start(3, points + added + recording->controller_count());
+  start << recording->start.leftCols(points), interior,
+      recording->start.rightCols(recording->controller_count());
+  Points velocity = Points::Zero(3, points + added);
+  velocity.leftCols(points) = recording->velocity;
+  recording->interior = interior;
+  recording->start = start;
+  recording->rest = start;
+  recording->velocity = velocity;
+}
+
+void Run(const Arguments& arguments) {
+  Recording recording = ReadRecording(arguments.recording);
+  ExpectPlain(recording, arguments.recording);
+  const TriangleMesh mesh = ReadMesh(arguments.mesh);
+  ExpectSamePlace(mesh, recording.start, arguments.mesh);
+  const Points interior = SampleInterior(mesh, arguments.spacing, recording.start);
+  if (interior.cols() == 0) {
+    throw Error(
+        fmt::format("{}: no point of a lattice of {} m is inside; a smaller --spacing or a "
+                    "closed mesh is needed",
+                    arguments.mesh, arguments.spacing));
+  }
+  AddInterior(interior, &recording);
+  WriteRecording(recording, arguments.output);
+  fmt::print("{}: {} points, {} interior, {} controllers\n", arguments.output,
+             recording.point_count(), recording.interior_count(), recording.controller_count());
+}
+
+}  // namespace
+
+void AddInteriorCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "interior",
+      "Fills a mesh of the object, as it is in frame 0 of a recording, with particles that no "
+      "camera sees, and writes the recording with them.");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("recording", arguments->recording, "recording")
+      ->required()
+      ->type_name("REC.npz");
+  command
+      ->add_option("--mesh", arguments->mesh,
+                   "surface (OBJ, PLY, STL, GLB), where the recording's points are in frame 0")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--spacing", arguments->spacing, "of the particles")
+      ->check(NumberBetween(1e-6, 10))
+      ->type_name("METRES")
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "recording to write")
+      ->required()
+      ->type_name("NEW.npz");
+  command->callback([arguments] { Run(*arguments); });
+}
+
+}  // namespace physpring

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// `physpring export` and `physpring interior` as a user sees them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/program.h"
+#include "tests/support/small_twin.h"
+#include "tests/support/temporary_folder.h"
+#include "twin/atomic_file.h"
+
+namespace physpring {
+namespace {
+
+class Export : public testing::Test {
+ protected:
+  Export() { WriteTwin(SmallTwin(2), TwinPath()); }
+
+  std::string TwinPath() const { return folder_.File("block.twin.npz"); }
+  std::string Folder() const { return folder_.File("out"); }
+  ProgramResult Run(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"export", TwinPath(), "-o", Folder()});
+    return RunProgram(more);
+  }
+  bool Wrote() const { return std::filesystem::exists(Folder()); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Export, WritesAFolderAndTellsWhatIsInIt) {
+  const ProgramResult result = Run({});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  EXPECT_NE(result.output.find("level0.xml: 40 nodes"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("level1.xml: 20 nodes"), std::string::npos) << result.output;
+  for (const char* name :
+       {"README.md", "level0.xml", "level1.xml", "scene.xml", "scene_level1.xml"}) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(Folder() + "/" + name)) << name;
+  }
+  const std::string readme = ReadFile(Folder() + "/README.md");
+  EXPECT_NE(readme.find("physpring export block.twin.npz -o out\n"), std::string::npos) << readme;
+}
+
+TEST_F(Export, OneLevelHasTheScene) {
+  EXPECT_EQ(Run({"--level", "1", "--springs", "flex", "--flexes", "2"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(Folder() + "/level0.xml"));
+  EXPECT_NE(ReadFile(Folder() + "/scene.xml").find("level1.xml"), std::string::npos);
+}
+
+TEST_F(Export, TellsHowFlexesRound) {
+  const ProgramResult result = Run({"--springs", "flex"});
+  EXPECT_NE(result.output.find("flexes, rounded: stiffness by"), std::string::npos)
+      << result.output;
+}
+
+TEST_F(Export, OverwritesOnlyIfForced) {
+  EXPECT_EQ(Run({}).status, 0);
+  EXPECT_TRUE(FailsWith(Run({}), Folder() + ": exists; --force overwrites"));
+  EXPECT_EQ(Run({"--force"}).status, 0);
+}
+
+TEST_F(Export, AFailureLeavesNothing) {
+  EXPECT_TRUE(FailsWith(Run({"--timestep", "0.5"}), "a time step of 0.5 s is unstable"));
+  EXPECT_TRUE(FailsWith(Run({"--level", "2"}), "has no level 2, expected 0 to 1"));
+  EXPECT_TRUE(FailsWith(Run({"--name", "a b"}), "name 'a b'"));
+  EXPECT_TRUE(FailsWith(Run({"--mesh", "/none.obj"}), "/none.obj: no such file"));
+  EXPECT_FALSE(Wrote());
+}
+
+TEST_F(Export, BadUsageIsToldAsSuch) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--springs", "rubber"},
+                                                    {"--springs", "1"},
+                                                    {"--contact", "hard"},
+                                                    {"--controllers", "hand"},
+                                                    {"--level", "-1"},
+                                                    {"--level", "first"},
+                                                    {"--flexes", "0"},
+                                                    {"--timestep", "0"}}) {
+    const ProgramResult result = Run(arguments);
+    EXPECT_EQ(result.status, 2) << arguments[0];
+    EXPECT_NE(result.errors.find(arguments[0]), std::string::npos) << result.errors;
+  }
+  EXPECT_FALSE(Wrote());
+}
+
+// A box around the small twin's particles, 20 mm larger on all sides.
+constexpr char kBox[] =
+    "v -0.02 -0.02 -0.02\nv 0.1 -0.02 -0.02\nv 0.1 0.08 -0.02\nv -0.02 0.08 -0.02\n"
+    "v -0.02 -0.02 0.06\nv 0.1 -0.02 0.06\nv 0.1 0.08 0.06\nv -0.02 0.08 0.06\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST_F(Export, InteriorFillsAMesh) {
+  Recording recording = RecordingOfMotion(SmallTwin(1), 5);
+  recording.interior = Points(3, 0);
+  recording.start = Points(3, 34);
+  recording.start << recording.points[0], recording.controllers[0];
+  recording.rest = recording.start;
+  recording.velocity = Points::Zero(3, 32);
+  WriteRecording(recording, folder_.File("swing.npz"));
+  std::ofstream(folder_.File("box.obj")) << kBox;
+  const ProgramResult result =
+      RunProgram({"interior", folder_.File("swing.npz"), "--mesh", folder_.File("box.obj"),
+                  "--spacing", "0.01", "-o", folder_.File("full.npz")});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  const Recording full = ReadRecording(folder_.File("full.npz"));
+  EXPECT_EQ(full.point_count(), 32);
+  EXPECT_GT(full.interior_count(), 500);  // of 13 x 11 x 9 points of the lattice
+  EXPECT_TRUE(FailsWith(RunProgram({"interior", folder_.File("full.npz"), "--mesh",
+                                    folder_.File("box.obj"), "-o", folder_.File("no.npz")}),
+                        "has an array 'interior'"));
+}
+
+}  // namespace
+}  // namespace physpring
