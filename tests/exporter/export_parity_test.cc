@@ -141,7 +141,7 @@ ExportOptions ContactFree(ControllerKind controllers) {
   return options;
 }
 
-// measured everywhere: below 1e-13 m, rounding alone
+// measured everywhere: below 1e-14 m, rounding alone
 void ExpectParity(const Distance& distance) {
   EXPECT_GT(distance.travelled, 0.05);
   EXPECT_LT(distance.nodes, 1e-9);
