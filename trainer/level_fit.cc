@@ -21,18 +21,13 @@ namespace {
 constexpr int kMostRecordings = 4;  // that common factors are fitted to
 constexpr int kMostSpringRecordings = 12;
 constexpr int kCommonSteps = 8;
-constexpr double kHeadroom = 1.25;  // of sub-steps, that single springs find above common factors
-constexpr int kPatience = 5;        // epochs without gain on held-back frames
+constexpr int kPatience = 5;  // epochs without gain on held-back frames
 constexpr int kGaussNewtonSteps = 6;
 constexpr int kConjugateGradientSteps = 12;
 
-// Of a frame.
-int StableSubstepsOf(const SpringMassSystem& system, double fps) {
-  return StableSubsteps(ComputeStabilityBound(system), 1 / fps, kFitSafety);
-}
-
+// Of a frame: never more than level 0 needs.
 int MostSubsteps(const TwinLevel& dense, double fps) {
-  return std::max(StableSubstepsOf(dense.system, fps),
+  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kFitSafety),
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
 }
 
@@ -48,21 +43,19 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
       twin_(twin),
       level_(static_cast<int>(twin.levels.size()) - 1),
       most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
-      projected_substeps_(StableSubstepsOf(twin.levels.back().system, data.recordings[0].fps)),
       held_back_(HoldBack(data, kMostRecordings)),
       network_(network),
       common_(Eigen::VectorXd::Zero(CommonParameters().size())),
       weights_(weights),
       best_weights_(weights) {}
 
-// A system may need `headroom` times the sub-steps of level 0, or as many as the projection does.
-LiftedMotion::Options LevelFit::MotionOptions(double headroom, int threads) const {
+LiftedMotion::Options LevelFit::MotionOptions(int threads) const {
   LiftedMotion::Options motion;
   motion.rollout.single_precision = options_.single_precision;
   motion.rollout.controller_velocity = twin_.controller_velocity;
   motion.rollout.substeps = options_.substeps;
   motion.safety = kFitSafety;
-  motion.most_substeps = std::max(static_cast<int>(headroom * most_substeps_), projected_substeps_);
+  motion.most_substeps = most_substeps_;
   motion.threads = threads;
   return motion;
 }
@@ -85,8 +78,7 @@ SpringMassSystem LevelFit::CorrectedSystem(const Eigen::VectorXd& weights) const
 void LevelFit::StepCommon() {
   const Parameters parameters = CommonParameters();
   // the differences run in parallel
-  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostRecordings),
-                            MotionOptions(1, 1));
+  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostRecordings), MotionOptions(1));
   LevenbergMarquardtOptions options;
   options.threads = options_.threads;
   options.difference = HasGround() ? 1e-2 : 1e-3;
@@ -128,7 +120,7 @@ double LevelFit::HeldBackError(const SpringMassSystem& system) const {
   for (const ScoredFrames& scored : held_back_.scored) {
     episodes.push_back({scored.recording, scored.last});
   }
-  const LiftedMotion motion(twin_, level_, episodes, MotionOptions(kHeadroom, options_.threads));
+  const LiftedMotion motion(twin_, level_, episodes, MotionOptions(options_.threads));
   const auto moved = motion.Run(system, motion.Substeps(system));
   if (!moved) return std::numeric_limits<double>::infinity();
   double sum = 0;
@@ -151,8 +143,7 @@ void LevelFit::StepNetwork() {
     best_iteration_ = iteration_;
   }
   status_ = fmt::format("level {}, network: {:.3f} mm on held-back frames", level_, 1e3 * score);
-  const LiftedMotion motion(twin_, level_, held_back_.fit,
-                            MotionOptions(kHeadroom, options_.threads));
+  const LiftedMotion motion(twin_, level_, held_back_.fit, MotionOptions(options_.threads));
   const std::optional<LiftedLoss> loss = ComputeLiftedLoss(motion, system);
   const bool worse = iteration_ - best_iteration_ >= kPatience * options_.network.updates;
   if (worse || iteration_ >= options_.network.epochs * options_.network.updates) {
@@ -180,7 +171,7 @@ void LevelFit::StepNetwork() {
 
 void LevelFit::StepSprings() {
   const Parameters parameters = SpringParameters();
-  LiftedMotion::Options motion_options = MotionOptions(kHeadroom, options_.threads);
+  LiftedMotion::Options motion_options = MotionOptions(options_.threads);
   motion_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
   const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostSpringRecordings),
                             motion_options);
@@ -295,7 +286,9 @@ SpringMassSystem LevelFit::System() const {
 
 int LevelFit::SubstepsPerSecond() const {
   const double fps = data_.recordings[0].fps;
-  const int substeps = options_.substeps > 0 ? options_.substeps : StableSubstepsOf(System(), fps);
+  const int substeps = options_.substeps > 0
+                           ? options_.substeps
+                           : StableSubsteps(ComputeStabilityBound(System()), 1 / fps, kFitSafety);
   return static_cast<int>(std::ceil(substeps * fps));
 }
 

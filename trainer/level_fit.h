@@ -46,7 +46,7 @@ class LevelFit {
   enum class Stage { kCommon, kNetwork, kSprings, kDone };
 
   bool HasGround() const { return data_.recordings[0].ground.has_value(); }
-  LiftedMotion::Options MotionOptions(double headroom, int threads) const;
+  LiftedMotion::Options MotionOptions(int threads) const;
   Parameters CommonParameters() const;
   Parameters SpringParameters() const;
   SpringMassSystem CorrectedSystem(const Eigen::VectorXd& weights) const;
@@ -61,8 +61,7 @@ class LevelFit {
   TrainOptions options_;
   Twin twin_;
   int level_;
-  int most_substeps_;       // a frame, of level 0
-  int projected_substeps_;  // a frame, of the level as it was projected
+  int most_substeps_;  // a frame
   HeldBack held_back_;
   const GraphNetwork& network_;
 
