@@ -57,9 +57,9 @@ TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double int
     const Stopwatch step;
     const std::string part = fitter->Part();
     run.finished = !fitter->Step();
+    if (run.finished) break;
     if (run.parts.empty() || run.parts.back().first != part) run.parts.emplace_back(part, 0);
     run.parts.back().second += step.seconds();
-    if (run.finished) break;
     spdlog::info("{:5.1f} %  {}", 100 * fitter->Progress(), fitter->Status());
     progress.Show(fitter->Progress(), fitter->Status());
     if (since_checkpoint.seconds() < interval) continue;
