@@ -61,12 +61,12 @@ std::string CommandLine(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || option->check_name("--force")) continue;
     if (!option->get_snames().empty()) {
-      line += " -" + option->get_snames().front();
+      line.append(" -").append(option->get_snames().front());
     } else if (!option->get_lnames().empty()) {
-      line += " --" + option->get_lnames().front();
+      line.append(" --").append(option->get_lnames().front());
     }
     for (const std::string& value : option->results()) {
-      line += " " + ShellWord(std::filesystem::path(value).filename().string());
+      line.append(" ").append(ShellWord(std::filesystem::path(value).filename().string()));
     }
   }
   return line;
