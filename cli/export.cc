@@ -31,16 +31,13 @@ CLI::Option* AddKind(CLI::App* command, const std::string& name, Kind* kind,
                      const std::string& description) {
   std::vector<std::string> words;
   for (const auto& [word, value] : kinds) words.push_back(word);
-  const auto number_of = [kinds, is_word = OneOf(words)](std::string& text) {
+  const auto take = [kind, kinds](const std::string& text) {
     for (const auto& [word, value] : kinds) {
-      if (text != word) continue;
-      text = std::to_string(static_cast<int>(value));
-      return std::string();
+      if (text == word) *kind = value;
     }
-    return is_word(text);
   };
-  return command->add_option(name, *kind, description)
-      ->transform(CLI::Validator(number_of, ""))
+  return command->add_option_function<std::string>(name, take, description)
+      ->check(CLI::Validator(OneOf(words), ""))
       ->type_name(fmt::format("{}", fmt::join(words, "|")))
       ->default_str(words.front());
 }

@@ -99,7 +99,8 @@ model = mujoco.MjModel.from_xml_path("scene.xml")
 
 {5} {6}
 
-{7}{9}In a scene of your own, with a time step below the largest stable one and the Euler integrator:
+{7}{9}In a scene of your own, with the Euler integrator and a time step below the largest stable one (springs
+in the plugin take sub-steps of their own, so any will do):
 
 ```xml
 <asset>
