@@ -59,6 +59,32 @@ std::string DescribeParameters(const EffectValues& effect) {
   return text;
 }
 
+// How a MuJoCo model carries the effect.
+std::string InMuJoCo(const EffectValues& effect, const SpringMassSystem& system) {
+  const EffectMjcf mjcf = GetEffect(effect.name).Mjcf(effect.values, system);
+  const auto with_difference = [&](const std::string& text) {
+    return mjcf.difference.empty() ? text : fmt::format("{} ({})", text, mjcf.difference);
+  };
+  switch (mjcf.carrier) {
+    case EffectMjcf::Carrier::kSetting:
+      return "in MuJoCo: in the exported masses, rest lengths, gravity or contacts";
+    case EffectMjcf::Carrier::kTendon: {
+      std::string attributes;
+      for (const auto& [name, value] : mjcf.tendon.at(0)) {
+        attributes += fmt::format(" {}=&quot;{}&quot;", name, value);
+      }
+      return with_difference(
+          fmt::format("in MuJoCo: on each spring's tendon, the first:{}", attributes));
+    }
+    case EffectMjcf::Carrier::kAnchor:
+      return with_difference(
+          fmt::format("in MuJoCo: {} tendons to a site of the world", mjcf.anchors.size()));
+    case EffectMjcf::Carrier::kPlugin:
+      break;
+  }
+  return with_difference("in MuJoCo: by the plugin only");
+}
+
 std::string Verdict(const Diagnosis& diagnosis) {
   if (diagnosis.effects.empty() && !diagnosis.unexplained) return "nothing is missing";
   std::string verdict;
@@ -105,7 +131,7 @@ std::string Plot(const Diagnosis& diagnosis) {
 
 std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
   Json candidates = Json::array();
-  for (const Candidate& candidate : diagnosis.candidates) {
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
     candidates.push_back(
         {{"name", candidate.name},
          {"score", candidate.score},
@@ -127,7 +153,7 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   std::string text = fmt::format("noise floor: {}\n", Millimetres(diagnosis.noise_floor));
   text += fmt::format("before: fit {}, held out {}\n", Millimetres(diagnosis.before.fit),
                       Millimetres(diagnosis.before.held));
-  for (const Candidate& candidate : diagnosis.candidates) {
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
     if (!candidate.refit) continue;
     text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
                         candidate.name, 100 * candidate.score, Millimetres(candidate.refit->held),
@@ -158,13 +184,14 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& t
   page += "<h2>Effects added</h2><ul>";
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
     const EffectValues& effect = diagnosis.effects[i];
-    page += fmt::format("<li><b>{}</b>: {}</li>", effect.name, DescribeParameters(effect));
+    page += fmt::format("<li><b>{}</b>: {}; {}</li>", effect.name, DescribeParameters(effect),
+                        InMuJoCo(effect, diagnosis.twin.levels[0].system));
   }
   page += diagnosis.effects.empty() ? "<li>none</li></ul>" : "</ul>";
   page +=
       "<h2>Candidates</h2><table><tr><th>effect</th><th>part of the misfit, linearised</th>"
       "<th>held out, refitted</th><th>gain</th></tr>";
-  for (const Candidate& candidate : diagnosis.candidates) {
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
     page += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>{}</td><td>{}</td></tr>",
                         candidate.name, 100 * candidate.score,
                         candidate.refit ? Millimetres(candidate.refit->held) : "",

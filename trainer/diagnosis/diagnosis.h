@@ -9,9 +9,9 @@
 //   5  choose   the one that is best on frames not fitted; accept it if it beats the refit without
 //               it by more than chance (paired block bootstrap) and by more than a small part
 //   6  repeat from 3, until nothing is accepted
-// A twin that was trained on one of the recordings may have hidden the effect in its single
-// springs: then they are fitted again, together with the effect, at the end of 2 and 4. A twin that
-// was trained on others knows its object: then its own parameters hardly move.
+// A twin that was trained on one of the recordings has bent its single springs to what its model
+// lacks: they start again from equal ones, and are fitted at the end of 2 and 4. A twin that was
+// trained on others knows its object: then its own parameters hardly move.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 
@@ -42,7 +42,7 @@ struct TrackPair {
   double fit, held;
 };
 
-struct Candidate {
+struct EffectCandidate {
   std::string name;
   double score = 0;                // part of the squared misfit that the linearised fit takes away
   std::optional<TrackPair> refit;  // of the best few
@@ -65,7 +65,7 @@ struct Diagnosis {
   TrackPair before{}, after{};
   BootstrapResult gain;  // of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;
-  std::vector<Candidate> candidates;  // of the first round, best first
+  std::vector<EffectCandidate> candidates;  // of the first round, best first
   std::optional<Unexplained> unexplained;
   FrameTrack before_track, after_track;  // on held-out frames
   Twin twin;                             // refitted, with the effects

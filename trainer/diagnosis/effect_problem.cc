@@ -13,6 +13,9 @@ namespace {
 
 using Use = SplitRecording::Use;
 
+// Sub-step as a part of the largest stable one, at most, where the number of sub-steps is given.
+constexpr double kLargestSafety = 0.95;
+
 // Calls visit(frame, point) for everything seen in frames of that use, in a fixed order.
 template <class Visit>
 void ForEachSeen(const SplitRecording& split, Use use, Visit visit) {
@@ -87,7 +90,18 @@ std::optional<Eigen::VectorXd> EffectProblem::RollOutAll(
   return residuals;
 }
 
+bool EffectProblem::IsStable(const Eigen::VectorXd& x) const {
+  const StabilityBound bound = ComputeStabilityBound(model_.Apply(x));
+  for (std::size_t i = 0; i < recordings_.size(); ++i) {
+    const double fps = recordings_[i].recording->fps;
+    if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps_[i]) return false;
+    if (StableSubsteps(bound, 1 / fps, options_.safety) * fps > options_.most_rate) return false;
+  }
+  return true;
+}
+
 std::optional<Eigen::VectorXd> EffectProblem::Residuals(const Eigen::VectorXd& x) {
+  if (!IsStable(x)) return {};
   return RollOutAll(x, true, nullptr);
 }
 

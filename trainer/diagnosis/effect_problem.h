@@ -46,6 +46,7 @@ class EffectProblem : public LeastSquares {
   // The sub-steps that x needs, used from now on; false if that is too many.
   bool FixSubsteps(const Eigen::VectorXd& x);
 
+  // Nothing also where x needs more sub-steps than are fixed, or than may be.
   std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) override;
   std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) override;
   Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) override;
@@ -56,6 +57,7 @@ class EffectProblem : public LeastSquares {
   std::optional<std::vector<std::vector<Points>>> Predict(const Eigen::VectorXd& x) const;
 
  private:
+  bool IsStable(const Eigen::VectorXd& x) const;
   std::optional<Eigen::VectorXd> RollOutAll(const Eigen::VectorXd& x, bool fit_only,
                                             std::vector<std::unique_ptr<Rollout>>* rollouts) const;
 

@@ -30,10 +30,12 @@ class MassDistribution : public Effect {
     constexpr int kPlaces = 10;
     std::vector<Eigen::VectorXd> starts;
     for (int node : SpreadNodes(system, kPlaces)) {
-      Eigen::VectorXd start = Eigen::VectorXd::Zero(4 + kKnots);
-      start[0] = 0.1 * system.mass.sum();
-      start.segment<3>(1) = system.position.col(node);
-      starts.push_back(start);
+      for (double part : {0.1, 0.5}) {
+        Eigen::VectorXd start = Eigen::VectorXd::Zero(4 + kKnots);
+        start[0] = part * system.mass.sum();
+        start.segment<3>(1) = system.position.col(node);
+        starts.push_back(start);
+      }
     }
     return starts;
   }
