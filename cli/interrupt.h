@@ -3,7 +3,7 @@
 #ifndef PHYSPRING_CLI_INTERRUPT_H_
 #define PHYSPRING_CLI_INTERRUPT_H_
 
-#include <signal.h>
+#include <csignal>
 
 namespace physpring {
 

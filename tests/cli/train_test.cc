@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `physpring train` as a user sees it, on tiny recordings.
 #include <gtest/gtest.h>
-#include <signal.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>

@@ -61,7 +61,8 @@ TEST(Effects, MoveNodesAsInTheSimulator) {
 
 TEST(Effects, WithoutForcesAreRefused) {
   SpringMassSystem system = Rod();
-  const Effect& effect = GetEffect("gravity_direction");
+  const std::string name = "gravity_direction";
+  const Effect& effect = GetEffect(name);
   system.effects = {{effect.name(), effect.Starts(system)[0]}};
   EXPECT_THROW(LevelScene(system, WithEffects(system)), Error);
 }

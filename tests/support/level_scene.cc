@@ -2,7 +2,6 @@
 #include "tests/support/level_scene.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -15,7 +14,9 @@ namespace {
 using Config = std::vector<std::pair<std::string, std::string>>;
 
 std::string Join(const Eigen::VectorXd& values) {
-  return fmt::format("{}", fmt::join(values, " "));
+  std::string text;
+  for (double value : values) text += fmt::format("{} ", value);
+  return text;
 }
 
 std::string Vector(const Eigen::Vector3d& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }

@@ -2,9 +2,10 @@
 #include "tests/support/running_program.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <csignal>
 
 namespace physpring {
 
