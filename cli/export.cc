@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "exporter/folder.h"
+#include "twin/free_twin.h"
 
 namespace physpring {
 namespace {
@@ -93,7 +94,8 @@ std::string DescribeLevel(const ExportedLevel& level) {
 }
 
 void Run(const Arguments& arguments, const std::string& command_line) {
-  const Twin twin = ReadTwin(arguments.twin);
+  const bool free = arguments.options.controllers == ControllerKind::kNone;
+  const Twin twin = free ? WithoutControllers(ReadTwin(arguments.twin)) : ReadTwin(arguments.twin);
   const Export result = ExportTwin(twin, arguments.options, command_line);
   WriteFolder(arguments.output, result.files, arguments.force);
   fmt::print("{}\n", arguments.output);
@@ -120,8 +122,9 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
       command, "--controllers", &options->controllers,
       {{"auto", ControllerKind::kAuto},
        {"mocap", ControllerKind::kMocap},
-       {"slide", ControllerKind::kSlide}},
-      "what holds the object; auto: slide where dashpots must feel its velocity");
+       {"slide", ControllerKind::kSlide},
+       {"none", ControllerKind::kNone}},
+      "what holds the object; auto: slide where dashpots must feel its velocity; none: it is free");
   AddKind<ContactKind>(command, "--contact", &options->contact,
                        {{"auto", ContactKind::kAuto},
                         {"mujoco", ContactKind::kMujoco},

@@ -19,6 +19,7 @@ enum class ControllerKind {
   kAuto,   // kSlide if dashpots feel the controllers' velocity and nothing else can supply it
   kMocap,  // mocap bodies: placed by the user, without velocity in MuJoCo
   kSlide,  // bodies on three slide joints that position actuators drive
+  kNone,   // nothing: the object is free. The twin must have none: WithoutControllers
 };
 
 // What stands for the contact law.

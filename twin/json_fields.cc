@@ -52,6 +52,44 @@ int JsonFields::Count(const std::string& key) const {
   return static_cast<int>(value);
 }
 
+double JsonFields::Number(const std::string& key) const {
+  if (!Get(key).is_number()) FailKind(key, "a number");
+  return Get(key).get<double>();
+}
+
+std::vector<double> JsonFields::Numbers(const std::string& key) const {
+  const Json& array = Get(key);
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  if (!array.is_array() || !std::all_of(array.begin(), array.end(), is_number)) {
+    FailKind(key, "an array of numbers");
+  }
+  return array.get<std::vector<double>>();
+}
+
+std::vector<std::string> JsonFields::Texts(const std::string& key) const {
+  const Json& array = Get(key);
+  const auto is_text = [](const Json& value) { return value.is_string(); };
+  if (!array.is_array() || !std::all_of(array.begin(), array.end(), is_text)) {
+    FailKind(key, "an array of text");
+  }
+  return array.get<std::vector<std::string>>();
+}
+
+std::vector<std::vector<int>> JsonFields::WholeNumberLists(const std::string& key) const {
+  const auto is_whole = [](const Json& value) {
+    return value.is_number_integer() && value >= std::numeric_limits<int>::min() &&
+           value <= std::numeric_limits<int>::max();
+  };
+  const auto is_list = [&](const Json& value) {
+    return value.is_array() && std::all_of(value.begin(), value.end(), is_whole);
+  };
+  const Json& array = Get(key);
+  if (!array.is_array() || !std::all_of(array.begin(), array.end(), is_list)) {
+    FailKind(key, "an array of arrays of whole numbers");
+  }
+  return array.get<std::vector<std::vector<int>>>();
+}
+
 JsonFields JsonFields::Object(const std::string& key) const {
   if (!Get(key).is_object()) FailKind(key, "an object");
   return JsonFields(Get(key), where_, parent_ + key + ".");

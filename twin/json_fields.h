@@ -24,6 +24,10 @@ class JsonFields {
   bool Flag(const std::string& key) const;
   std::uint64_t Unsigned(const std::string& key) const;
   int Count(const std::string& key) const;  // a whole number from 0 that fits an int
+  double Number(const std::string& key) const;
+  std::vector<double> Numbers(const std::string& key) const;     // an array of numbers
+  std::vector<std::string> Texts(const std::string& key) const;  // an array of text
+  std::vector<std::vector<int>> WholeNumberLists(const std::string& key) const;  // [[0, 1], ...]
   JsonFields Object(const std::string& key) const;
   std::vector<JsonFields> Objects(const std::string& key) const;  // an array of objects
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A task: a folder with a MuJoCo scene, the levels of a twin, and `task.json`, which says where the
+// object lies, how the robot is driven, where episodes start and what counts as success
+// (docs/rollout.md has every key).
+#ifndef PHYSPRING_ROLLOUT_TASK_H_
+#define PHYSPRING_ROLLOUT_TASK_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rollout/pose.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+// How actions become the scene's controls.
+enum class RobotKind {
+  kCartesian,  // 8 numbers x y z qw qx qy qz gripper: the pose of a mocap body, and fingers
+  kJoints,     // one number an actuator
+};
+
+struct RobotOptions {
+  RobotKind kind = RobotKind::kCartesian;
+  std::string target;  // mocap body that the hand is welded to (kCartesian)
+  std::string hand;    // site whose pose is the robot's state
+  std::vector<std::string>
+      actuators;                 // the fingers' (kCartesian), or all that are driven (kJoints)
+  Eigen::VectorXd open, closed;  // (actuators), ctrl at gripper 0 and 1 (kCartesian)
+  Eigen::VectorXd home;          // the action while the scene settles; empty: as the scene is
+  double speed = 0.5;            // m/s, at most, of the target (kCartesian)
+  double turn_speed = 3;         // rad/s, at most, of the target (kCartesian)
+  double gripper_speed = 2;      // 1/s, at most, of the gripper's range (kCartesian)
+
+  int action_size() const;  // numbers in an action
+};
+
+// Places where the object starts, relative to Task::object: each x with each y with each yaw, plus
+// noise, uniform between -noise and noise.
+struct StartOptions {
+  std::vector<double> x{0}, y{0}, yaw{0};  // m, m, rad
+  double noise_xy = 0, noise_yaw = 0;      // m, rad
+
+  int cells() const;  // of the grid
+};
+
+struct SuccessOptions {
+  std::string rule;            // its name: see success_rule.h
+  std::string body;            // in whose frame the rule's numbers are; empty: the world's
+  int from_frame = 0;          // frames before this one do not count
+  int at_least = 1;            // frames in which the rule must be met, not necessarily in a row
+  std::string numbers = "{}";  // the rule's own, a JSON object
+};
+
+struct Task {
+  std::string name;
+  std::string folder;
+  std::string prompt;               // the task in words, for policies that read
+  std::string scene;                // path of the MJCF without the object
+  Twin twin;                        // the object
+  std::vector<std::string> levels;  // paths of the exported levels, level 0 first
+  Pose object;                      // of the twin's reference configuration in the scene
+  double rate = 30;                 // Hz, of control; a frame lasts 1 / rate
+  int settle = 30;                  // frames before frame 0, the robot at home
+  int frames = 900;                 // of an episode
+  RobotOptions robot;
+  StartOptions starts;
+  SuccessOptions success;
+  std::string policy;                // the scripted policy, see policies/registry.h
+  std::vector<std::string> cameras;  // names in the scene; the first one makes the video
+  int width = 640, height = 480;     // pixels, of what cameras see
+};
+
+// Reads FOLDER/task.json and the twin that it names. Throws Error, one line that begins with the
+// file, when something is missing, unknown or out of range.
+Task ReadTask(const std::string& folder);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_ROLLOUT_TASK_H_
