@@ -2,11 +2,11 @@
 #include "cli/checkpoint.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "twin/atomic_file.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -71,18 +71,24 @@ std::string NameOfTwin(const std::string& path) {
   return name;
 }
 
-bool IsFinished(const Twin& twin) {
-  const auto finished = twin.training_state.find(kFinished);
-  // a twin from elsewhere has no training to go on with
-  return finished == twin.training_state.end() || finished->second.ToInts() == std::vector<int>{1};
-}
-
 bool Exists(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
 }
 
 }  // namespace
+
+bool IsFinished(const Twin& twin) {
+  const auto finished = twin.training_state.find(kFinished);
+  return finished == twin.training_state.end() || finished->second.ToInts() == std::vector<int>{1};
+}
+
+void WarnIfUnfinished(const Twin& twin, const std::string& path) {
+  if (IsFinished(twin)) return;
+  fmt::print(stderr,
+             "warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
+             path);
+}
 
 Checkpoint::Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
                        const std::string& from)
@@ -96,11 +102,7 @@ Checkpoint::Checkpoint(const std::string& path, const FitData& data, const Train
 }
 
 void Checkpoint::ExpectWritable(bool force) const {
-  const fs::path folder = fs::path(path_).parent_path();
-  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0) {
-    throw Error(
-        fmt::format("{}: cannot be written: its folder is missing or write-protected", path_));
-  }
+  ExpectFileWritable(path_);
   if (!Exists(path_)) return;
   Twin twin;
   try {

@@ -12,6 +12,12 @@
 
 namespace physpring {
 
+// Whether the training that wrote a twin came to its end; true of a twin from elsewhere.
+bool IsFinished(const Twin& twin);
+
+// Says so on stderr if it did not.
+void WarnIfUnfinished(const Twin& twin, const std::string& path);
+
 class Checkpoint {
  public:
   // Of the training on `data` with `options` that writes to `path`. `from`: the file that level 0

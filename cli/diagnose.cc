@@ -87,6 +87,7 @@ void AddDiagnoseCommand(CLI::App& app) {
       ->add_option("-o,--output", arguments->output,
                    "folder for report.html, report.json and the twin with the effects")
       ->required()
+      ->check(NotEmpty())
       ->type_name("DIR");
   command
       ->add_option("--heldout", arguments->held_out,

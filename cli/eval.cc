@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/eval_report.h"
 #include "cli/evaluation.h"
 #include "cli/option_values.h"
+#include "cli/output_files.h"
 #include "cli/picture/page.h"
 #include "trainer/parallel.h"
 #include "twin/atomic_file.h"
@@ -46,10 +49,33 @@ EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
   return evaluated;
 }
 
+// Before the work. Trajectories of several recordings go to a folder.
+void ExpectWritable(const Arguments& arguments, const std::vector<RecordingEntry>& entries) {
+  std::vector<std::string> inputs{arguments.twin};
+  for (const RecordingEntry& entry : entries) inputs.push_back(entry.path);
+  std::error_code missing;
+  const bool folder =
+      entries.size() > 1 || std::filesystem::is_directory(arguments.trajectory, missing);
+  ExpectOutputs({arguments.json, arguments.picture, folder ? "" : arguments.trajectory}, inputs);
+}
+
+// A twin that predicts worse than something that does not move is of no use.
+void WarnIfUseless(const Evaluation& evaluation) {
+  const std::vector<Row> rows = MeanRows(evaluation);
+  const auto still = rows.back().prediction.track.value;
+  for (const Row& row : rows) {
+    const auto track = row.prediction.track.value;
+    if (row.level < 0 || !track || !still || *track <= *still) continue;
+    fmt::print(stderr, "warning: {} predicts worse than a body that does not move\n", row.name);
+  }
+}
+
 void Run(const Arguments& arguments) {
   const PredictOptions options{arguments.precision == "float", arguments.substeps};
   Evaluation evaluation{arguments.twin, ReadTwin(arguments.twin), options.single_precision, {}};
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
+  ExpectWritable(arguments, entries);
+  WarnIfUnfinished(evaluation.twin, arguments.twin);
   evaluation.recordings.resize(entries.size());
   ParallelFor(static_cast<int>(entries.size()), arguments.threads, [&](int i) {
     evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], options);
@@ -61,6 +87,7 @@ void Run(const Arguments& arguments) {
     }
   }
   fmt::print("{}", FormatTables(evaluation));
+  WarnIfUseless(evaluation);
   if (!arguments.trajectory.empty()) WriteTrajectories(evaluation, arguments.trajectory);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, FormatJson(evaluation));
   if (!arguments.picture.empty()) {

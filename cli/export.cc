@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "exporter/folder.h"
@@ -94,8 +95,10 @@ std::string DescribeLevel(const ExportedLevel& level) {
 }
 
 void Run(const Arguments& arguments, const std::string& command_line) {
+  const Twin read = ReadTwin(arguments.twin);
+  WarnIfUnfinished(read, arguments.twin);
   const bool free = arguments.options.controllers == ControllerKind::kNone;
-  const Twin twin = free ? WithoutControllers(ReadTwin(arguments.twin)) : ReadTwin(arguments.twin);
+  const Twin twin = free ? WithoutControllers(read) : read;
   const Export result = ExportTwin(twin, arguments.options, command_line);
   WriteFolder(arguments.output, result.files, arguments.force);
   fmt::print("{}\n", arguments.output);
@@ -156,6 +159,7 @@ void AddExportCommand(CLI::App& app) {
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command->add_option("-o,--output", arguments->output, "folder to write")
       ->required()
+      ->check(NotEmpty())
       ->type_name("DIR");
   command->add_flag("--force", arguments->force, "write into a folder that has files in it");
   AddModelOptions(command, &arguments->options);

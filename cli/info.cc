@@ -4,8 +4,10 @@
 
 #include <memory>
 
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/info_text.h"
+#include "cli/output_files.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/npz.h"
@@ -22,7 +24,10 @@ Json Inspect(const std::string& path) {
     const Twin twin = ReadTwin(path);
     fmt::print("{}: a twin named {} with {} {}\n{}", path, twin.name, twin.levels.size(),
                twin.levels.size() == 1 ? "level" : "levels", DescribeTwin(twin));
-    return TwinToJson(twin);
+    WarnIfUnfinished(twin, path);
+    Json json = TwinToJson(twin);
+    json["finished"] = IsFinished(twin);
+    return json;
   }
   if (arrays.contains("points")) {
     const Recording recording = ReadRecording(path);
@@ -47,6 +52,7 @@ void AddInfoCommand(CLI::App& app) {
   command->add_option("file", arguments->file, "recording or twin")->required()->type_name("FILE");
   command->add_option("--json", arguments->json, "write it as JSON, too")->type_name("FILE.json");
   command->callback([arguments] {
+    ExpectOutputs({arguments->json}, {arguments->file});
     Json json = Inspect(arguments->file);
     if (arguments->json.empty()) return;
     json["file"] = arguments->file;

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/option_values.h"
+#include "cli/output_files.h"
 #include "exporter/mesh_file.h"
 #include "exporter/mesh_interior.h"
 #include "twin/error.h"
@@ -19,6 +20,7 @@ namespace {
 struct Arguments {
   std::string recording, mesh, output;
   double spacing = 0.01;
+  bool force = false;
 };
 
 // Nobody knows the rest positions or arc lengths of new particles.
@@ -47,6 +49,8 @@ void AddInterior(const Points& interior, Recording* recording) {
 }
 
 void Run(const Arguments& arguments) {
+  ExpectOutputs({arguments.output}, {arguments.recording, arguments.mesh});
+  ExpectNew(arguments.output, arguments.force);
   Recording recording = ReadRecording(arguments.recording);
   ExpectPlain(recording, arguments.recording);
   const TriangleMesh mesh = ReadMesh(arguments.mesh);
@@ -86,7 +90,9 @@ void AddInteriorCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "recording to write")
       ->required()
+      ->check(NotEmpty())
       ->type_name("NEW.npz");
+  command->add_flag("--force", arguments->force, "overwrite a file");
   command->callback([arguments] { Run(*arguments); });
 }
 

@@ -32,6 +32,10 @@ int main(int argc, char** argv) {
   physpring::AddInfoCommand(app);
   physpring::AddInteriorCommand(app);
   physpring::AddDoctorCommand(app);
+  if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1])) {
+    std::fprintf(stderr, "physpring: unknown command %s (see physpring --help)\n", argv[1]);
+    return 2;
+  }
   try {
     app.parse(argc, argv);
     return 0;

@@ -62,6 +62,10 @@ CLI::Validator WholeNumberOrAuto(std::int64_t most) {
           ""};
 }
 
+CLI::Validator NotEmpty() {
+  return {[](std::string& text) { return Expect(!text.empty(), "a name", text); }, ""};
+}
+
 CLI::Validator OneOf(const std::vector<std::string>& words) {
   return {[=](std::string& text) {
             return Expect(std::find(words.begin(), words.end(), text) != words.end(),

@@ -21,6 +21,9 @@ CLI::Validator WholeNumberBetween(std::int64_t least, std::int64_t most);
 // A whole number from 1 to `most`, or `auto`, which becomes 0: for CLI::Option::transform.
 CLI::Validator WholeNumberOrAuto(std::int64_t most);
 
+// Any text but the empty one.
+CLI::Validator NotEmpty();
+
 // One of a few words.
 CLI::Validator OneOf(const std::vector<std::string>& words);
 

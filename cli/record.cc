@@ -9,11 +9,15 @@
 
 #include "cli/commands.h"
 #include "cli/option_values.h"
+#include "cli/output_files.h"
 
 namespace physpring {
 namespace {
 
-void Run(const std::string& scene, const std::string& output, const RecordOptions& options) {
+void Run(const std::string& scene, const std::string& output, bool force,
+         const RecordOptions& options) {
+  ExpectOutputs({output}, {scene});
+  ExpectNew(output, force);
   const Recording recording = RecordScene(scene, options);
   WriteRecording(recording, output);
   for (const std::string& warning : recording.warnings) {
@@ -33,6 +37,7 @@ void AddRecordCommand(CLI::App& app) {
       "keyframes, and writes what a camera would have measured.");
   struct Arguments {
     std::string scene, output;
+    bool force = false;
     RecordOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -42,6 +47,7 @@ void AddRecordCommand(CLI::App& app) {
       ->type_name("SCENE.xml");
   command->add_option("-o,--output", arguments->output, "recording to write")
       ->required()
+      ->check(NotEmpty())
       ->type_name("REC.npz");
   command->add_option("--noise", options.noise, "standard deviation of each coordinate")
       ->check(NumberBetween(0, 1))
@@ -63,7 +69,10 @@ void AddRecordCommand(CLI::App& app) {
       ->check(NumberBetween(0.1, 10000))
       ->type_name("NUMBER")
       ->capture_default_str();
-  command->callback([arguments] { Run(arguments->scene, arguments->output, arguments->options); });
+  command->add_flag("--force", arguments->force, "overwrite a file");
+  command->callback([arguments] {
+    Run(arguments->scene, arguments->output, arguments->force, arguments->options);
+  });
 }
 
 }  // namespace physpring

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,10 +19,12 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
+#include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/training.h"
 #include "trainer/fit_data.h"
 #include "trainer/make_fitter.h"
+#include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/predict.h"
 
@@ -93,12 +94,8 @@ void Warn(const std::vector<std::string>& warnings) {
 }
 
 // A twin that was trained on the same recordings.
-Twin ReadLevel0(const std::string& path, const FitData& data, const std::string& output) {
+Twin ReadLevel0(const std::string& path, const FitData& data) {
   Twin twin = ReadTwin(path);
-  std::error_code missing;
-  if (std::filesystem::equivalent(path, output, missing)) {
-    throw Error(fmt::format("{}: --from and --output are the same file", path));
-  }
   ExpectSameObject(twin, data.recordings[0]);
   for (const Recording& recording : data.recordings) {
     const bool known = std::any_of(twin.trained_on.begin(), twin.trained_on.end(),
@@ -130,14 +127,25 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
   fmt::print("\n");
 }
 
+// Every file that is read, but the output.
+std::vector<std::string> InputsOf(const Arguments& arguments) {
+  std::vector<std::string> inputs;
+  if (!arguments.from.empty()) inputs.push_back(arguments.from);
+  for (const RecordingEntry& entry : ListRecordings(arguments.recordings, Role::kFit)) {
+    inputs.push_back(entry.path);
+  }
+  return inputs;
+}
+
 void Run(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const TrainOptions options = OptionsOf(arguments);
   const FitData data = ReadFitData(arguments.recordings);
   std::optional<Twin> dense;
-  if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data, arguments.output);
+  if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data);
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
   checkpoint.ExpectWritable(arguments.resume || arguments.force);
+  ExpectOutputs({arguments.output, arguments.log}, InputsOf(arguments));
   const std::unique_ptr<Fitter> fitter = MakeFitter(data, options, dense);
   if (arguments.resume) checkpoint.Resume(fitter.get());
   OpenLog(arguments.log, arguments.resume);
@@ -148,7 +156,7 @@ void Run(const Arguments& arguments) {
     fmt::print(stderr,
                "physpring: stopped at {:.0f} %; the same command with --resume goes on "
                "from {}\n",
-               100 * fitter->Progress(), arguments.output);
+               std::min(99.0, 100 * fitter->Progress()), arguments.output);
     throw Interrupted{run.signal};
   }
   Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
@@ -234,6 +242,7 @@ void AddTrainCommand(CLI::App& app) {
       ->type_name("REC.npz|DIR");
   command->add_option("-o,--output", arguments->output, "twin to write")
       ->required()
+      ->check(NotEmpty())
       ->type_name("NAME.twin.npz");
   AddFitOptions(command, arguments.get());
   arguments->options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

@@ -18,6 +18,7 @@ namespace physpring {
 namespace {
 
 constexpr double kPluginTimestep = 2e-3;  // s
+constexpr const char* kReserved = "world";
 
 bool IsPlain(char letter) {
   return std::isalnum(static_cast<unsigned char>(letter)) || letter == '_' || letter == '.' ||
@@ -30,9 +31,13 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
       throw Error(fmt::format("name {}: only letters, digits and \"_.-\" may be in a name",
                               Quote(options.name)));
     }
+    if (options.name == kReserved) {
+      throw Error(fmt::format("name {}: is what MuJoCo calls its root body; choose another",
+                              Quote(options.name)));
+    }
     return options.name;
   }
-  std::string name = twin.name.empty() ? "twin" : twin.name;
+  std::string name = twin.name.empty() || twin.name == kReserved ? "twin" : twin.name;
   std::replace_if(
       name.begin(), name.end(), [](char letter) { return !IsPlain(letter); }, '_');
   return name;

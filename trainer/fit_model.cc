@@ -87,7 +87,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
     topology.controller_max_neighbours *= kMostPerWanted;
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
-  ScaleToSubsteps(1 / recording.fps, start_substeps, kFitSafety, &system);
+  ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   return system;
 }
 
@@ -124,7 +124,7 @@ TrackProblem::Options FollowOptions(const Recording& recording, const Candidate&
   problem.rollout.single_precision = options.single_precision;
   problem.rollout.controller_velocity = candidate.controller_velocity;
   problem.rollout.substeps = options.substeps;
-  problem.safety = kFitSafety;
+  problem.safety = kStepSafety;
   problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / recording.fps));
   // contacts make residuals jump: differences are then taken over longer steps
   problem.difference = recording.ground ? 1e-3 : 1e-5;

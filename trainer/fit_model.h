@@ -15,8 +15,6 @@
 
 namespace physpring {
 
-constexpr double kFitSafety = 0.7;  // of the sub-step
-
 // One model: which particles are joined, and whether dashpots feel the controllers' velocity.
 struct Candidate {
   int neighbours = 0;  // of an inner particle, about

@@ -261,7 +261,7 @@ Twin FullFit::Result() const {
   level.system = CurrentSystem();
   const int substeps = options_.substeps > 0 ? options_.substeps
                                              : StableSubsteps(ComputeStabilityBound(level.system),
-                                                              1 / first().fps, kFitSafety);
+                                                              1 / first().fps, kStepSafety);
   level.substeps_per_second = static_cast<int>(std::ceil(substeps * first().fps));
   twin.levels.push_back(std::move(level));
   twin.points = first().point_count();

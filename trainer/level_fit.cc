@@ -27,7 +27,7 @@ constexpr int kConjugateGradientSteps = 12;
 
 // Of a frame: never more than level 0 needs.
 int MostSubsteps(const TwinLevel& dense, double fps) {
-  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kFitSafety),
+  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
 }
 
@@ -54,7 +54,7 @@ LiftedMotion::Options LevelFit::MotionOptions(int threads) const {
   motion.rollout.single_precision = options_.single_precision;
   motion.rollout.controller_velocity = twin_.controller_velocity;
   motion.rollout.substeps = options_.substeps;
-  motion.safety = kFitSafety;
+  motion.safety = kStepSafety;
   motion.most_substeps = most_substeps_;
   motion.threads = threads;
   return motion;
@@ -288,7 +288,7 @@ int LevelFit::SubstepsPerSecond() const {
   const double fps = data_.recordings[0].fps;
   const int substeps = options_.substeps > 0
                            ? options_.substeps
-                           : StableSubsteps(ComputeStabilityBound(System()), 1 / fps, kFitSafety);
+                           : StableSubsteps(ComputeStabilityBound(System()), 1 / fps, kStepSafety);
   return static_cast<int>(std::ceil(substeps * fps));
 }
 

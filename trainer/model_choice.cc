@@ -127,7 +127,7 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
     RolloutOptions options = FollowOptions(first(), candidate, options_).rollout;
     if (options.substeps == 0) {
       options.substeps =
-          StableSubsteps(ComputeStabilityBound(system), 1 / frames.recording->fps, kFitSafety);
+          StableSubsteps(ComputeStabilityBound(system), 1 / frames.recording->fps, kStepSafety);
     }
     const auto rollout = RollOut(system, {frames.recording, frames.last}, options);
     if (rollout->diverged()) return kInfinity;

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kGenerations = 20;
 constexpr double kStepSize = 1.0 / 6;
-constexpr double kSafety = 0.7;      // of the sub-step
 constexpr double kFailed = 1e6;      // m^2: objective of a candidate that cannot be simulated
 constexpr double kPassRollouts = 5;  // time of a pass, in rollouts of the fit frames
 
@@ -63,7 +62,7 @@ SpringMassSystem TwoStageFit::SystemAt(const Eigen::VectorXd& point) const {
 
 int TwoStageFit::Substeps(const SpringMassSystem& system) const {
   if (options_.substeps > 0) return options_.substeps;
-  return StableSubsteps(ComputeStabilityBound(system), 1 / data_.recordings[0].fps, kSafety);
+  return StableSubsteps(ComputeStabilityBound(system), 1 / data_.recordings[0].fps, kStepSafety);
 }
 
 RolloutOptions TwoStageFit::RolloutOptionsFor(const SpringMassSystem& system) const {

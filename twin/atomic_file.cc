@@ -56,6 +56,19 @@ class Descriptor {
   throw Error(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
 }
 
+// Where the links lead, so that a link stays a link and /dev/stdout stays a device.
+std::string FollowLinks(const std::string& path) {
+  std::error_code missing;
+  const std::filesystem::path resolved = std::filesystem::canonical(path, missing);
+  return missing ? path : resolved.string();
+}
+
+// Whether something is there that is written to as it is: a device, a pipe, a socket.
+bool IsDevice(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
 // A name beside `path` that no other writer, of this process or another, uses.
 std::string TemporaryName(const std::string& path) {
   static std::atomic<unsigned> count{0};
@@ -100,16 +113,22 @@ std::string ReadFile(const std::string& path, std::size_t limit) {
   }
 }
 
-void WriteFileAtomically(const std::string& path, std::string_view bytes) {
-  // Where the links lead, so that a link stays a link and /dev/stdout stays a device.
-  std::error_code missing;
-  const std::filesystem::path resolved = std::filesystem::canonical(path, missing);
-  const std::string target = missing ? path : resolved.string();
-
-  struct stat status {};
-  if (!missing && stat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    return WriteDirectly(path, bytes);
+void ExpectFileWritable(const std::string& path) {
+  if (path.empty()) throw Error("an empty file name cannot be written");
+  const std::string target = FollowLinks(path);
+  if (IsDevice(target)) return;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(target, ignored)) {
+    throw Error(fmt::format("{}: cannot be written: is a folder", path));
   }
+  const std::string temporary = TemporaryName(target);
+  if (!WriteNewFile(temporary, "")) FailToWrite(path, errno);
+  unlink(temporary.c_str());
+}
+
+void WriteFileAtomically(const std::string& path, std::string_view bytes) {
+  const std::string target = FollowLinks(path);
+  if (IsDevice(target)) return WriteDirectly(path, bytes);
 
   const std::string temporary = TemporaryName(target);
   if (!WriteNewFile(temporary, bytes) || rename(temporary.c_str(), target.c_str()) != 0) {

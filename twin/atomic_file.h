@@ -13,6 +13,10 @@ namespace physpring {
 // folder, or larger than `limit` bytes.
 std::string ReadFile(const std::string& path, std::size_t limit = std::size_t{1} << 32);
 
+// Throws Error beginning with the path if WriteFileAtomically could not write there now: for
+// finding out before long work. Leaves nothing behind.
+void ExpectFileWritable(const std::string& path);
+
 // Writes a temporary file in the same folder, syncs it to the disk and renames it. Throws Error
 // beginning with the path when that fails (folder missing or not writable, disk full); then a file
 // that was there before is untouched and no temporary file is left. Symbolic links are followed.

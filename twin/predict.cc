@@ -16,8 +16,6 @@
 namespace physpring {
 namespace {
 
-constexpr double kSafety = 0.5;  // of the automatic sub-step: share of the stability bound
-
 void ExpectEqual(const Twin& twin, const Recording& recording, const char* what, int recorded,
                  int learned) {
   if (recorded == learned) return;
@@ -53,7 +51,7 @@ std::vector<Points> Simulate(const Twin& twin, int level, const Recording& recor
 
 int ChooseSubsteps(const TwinLevel& level, double fps, int requested) {
   if (requested > 0) return requested;
-  const int stable = StableSubsteps(ComputeStabilityBound(level.system), 1 / fps, kSafety);
+  const int stable = StableSubsteps(ComputeStabilityBound(level.system), 1 / fps, kStepSafety);
   const int trained = static_cast<int>(std::ceil(level.substeps_per_second / fps - 1e-9));
   return std::max(stable, trained);
 }

@@ -18,8 +18,8 @@ struct PredictOptions {
   int substeps = 0;  // a frame; 0: ChooseSubsteps
 };
 
-// Sub-steps of a frame at `fps` frames per second: `requested` if that is more than 0, else half
-// the stability bound's sub-step, and never a longer one than the level was trained with.
+// Sub-steps of a frame at `fps` frames per second: `requested` if that is more than 0, else as many
+// as kStepSafety asks for, and never a longer one than the level was trained with.
 int ChooseSubsteps(const TwinLevel& level, double fps, int requested);
 
 // Throws Error, naming both numbers, unless the recording has as many points, interior particles

@@ -24,6 +24,8 @@ constexpr std::array<std::string_view, 13> kArrays{
     "rest",   "velocity",    "order", "surface", "track",   "train_frames"};
 constexpr double kSmallestDistance = 1e-7;  // m, between two particles
 constexpr double kAssumedMass = 0.1;        // kg
+constexpr double kLeastFps = 0.1, kMostFps = 1e6;
+constexpr double kLeastMass = 1e-9, kMostMass = 1e6;  // kg
 
 void ExpectKnownArrays(const Npz& arrays, const NpzFields& fields) {
   for (const auto& [name, array] : arrays) {
@@ -43,6 +45,9 @@ std::vector<Points> ReadFrames(NpzFields& fields, const std::string& name,
 void ReadMeasured(NpzFields& fields, Recording& recording) {
   recording.points = ReadFrames(fields, "points", "N");
   if (fields.Extent("T") < 2) fields.Fail("points", "has fewer than 2 frames");
+  if (!recording.points[0].array().isFinite().any()) {
+    fields.Fail("points", "has nothing seen in frame 0, which a motion starts from");
+  }
   for (Eigen::Index i = 0; i < recording.point_count(); ++i) {
     const auto sees = [i](const Points& frame) { return frame.col(i).allFinite(); };
     if (std::none_of(recording.points.begin(), recording.points.end(), sees)) {
@@ -54,9 +59,11 @@ void ReadMeasured(NpzFields& fields, Recording& recording) {
   if (fields.Has("track")) recording.track = ReadFrames(fields, "track", "K");
 }
 
-double ReadPositive(NpzFields& fields, const std::string& name) {
+double ReadBetween(NpzFields& fields, const std::string& name, double least, double most) {
   const double value = fields.Scalar(name);
-  if (value <= 0) fields.Fail(name, fmt::format("holds {}, expected more than 0", value));
+  if (value < least || value > most) {
+    fields.Fail(name, fmt::format("holds {}, expected {} to {}", value, least, most));
+  }
   return value;
 }
 
@@ -71,9 +78,9 @@ Eigen::Vector4d ReadGround(NpzFields& fields) {
 }
 
 void ReadConstants(NpzFields& fields, const std::string& path, Recording& recording) {
-  recording.fps = ReadPositive(fields, "fps");
+  recording.fps = ReadBetween(fields, "fps", kLeastFps, kMostFps);
   if (fields.Has("mass")) {
-    recording.mass = ReadPositive(fields, "mass");
+    recording.mass = ReadBetween(fields, "mass", kLeastMass, kMostMass);
   } else {
     recording.mass = kAssumedMass;
     recording.warnings.push_back(
@@ -160,6 +167,8 @@ void SetStart(const NpzFields& fields, const std::string& path, Recording& recor
 
 Recording ParseRecording(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
+  if (arrays.contains("meta") && !arrays.contains("points"))
+    fields.Fail("is a twin, not a recording");
   ExpectKnownArrays(arrays, fields);
   Recording recording;
   recording.name = std::filesystem::path(path).stem().string();

@@ -22,6 +22,9 @@ struct StabilityBound {
 // By Lanczos' method; springs of stiffness and dashpot 0 bound nothing (timestep is then infinite).
 StabilityBound ComputeStabilityBound(const SpringMassSystem& system);
 
+// Share of the bound's time step that automatic sub-steps stay below.
+constexpr double kStepSafety = 0.7;
+
 // Least number of sub-steps of a frame of `frame_time` seconds that keeps each below
 // safety * bound.timestep.
 int StableSubsteps(const StabilityBound& bound, double frame_time, double safety);

@@ -223,6 +223,8 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
 
 Twin ParseTwin(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
+  if (!arrays.contains("meta") && arrays.contains("points"))
+    fields.Fail("is a recording, not a twin");
   Twin twin;
   const auto [levels, controllers] = ReadMeta(fields, path, twin);
 

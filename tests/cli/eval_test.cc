@@ -60,6 +60,50 @@ TEST_F(Eval, PrintsATableAndNothingElse) {
   }
 }
 
+TEST_F(Eval, WritesOverNothingThatItReads) {
+  const std::string twin = ReadFile(path_), swing = ReadFile(swing_);
+  const std::string json = folder_.File("a.json");
+  const std::vector<std::vector<std::string>> bad{{"--json", swing_},
+                                                  {"--json", path_},
+                                                  {"--trajectory", swing_},
+                                                  {"--json", json, "--trajectory", json},
+                                                  {"--json", folder_.File("missing/a.json")},
+                                                  {"--json", "/proc/a.json"}};
+  for (const std::vector<std::string>& flags : bad) {
+    std::vector<std::string> arguments{"eval", path_, swing_};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    const ProgramResult result = RunProgram(arguments);
+    EXPECT_EQ(result.status, 1) << flags[1];
+    EXPECT_EQ(result.output, "") << flags[1];
+    EXPECT_EQ(result.errors.find("physpring: " + flags.back() + ": "), 0u) << result.errors;
+  }
+  EXPECT_EQ(ReadFile(path_), twin);
+  EXPECT_EQ(ReadFile(swing_), swing);
+}
+
+TEST_F(Eval, TellsTwinsFromRecordings) {
+  EXPECT_EQ(RunProgram({"eval", swing_, swing_}).errors,
+            "physpring: " + swing_ + ": is a recording, not a twin\n");
+  EXPECT_EQ(RunProgram({"eval", path_, path_}).errors,
+            "physpring: " + path_ + ": is a twin, not a recording\n");
+}
+
+TEST_F(Eval, WarnsOfATwinThatIsWorseThanNothing) {
+  for (Points& frame : recording_.points) frame = recording_.points[0];
+  WriteRecording(recording_, swing_);
+  EXPECT_EQ(RunProgram({"eval", path_, swing_}).errors,
+            "warning: level 0 predicts worse than a body that does not move\n"
+            "warning: level 1 predicts worse than a body that does not move\n");
+}
+
+TEST_F(Eval, WarnsOfAnUnfinishedTwin) {
+  const int no = 0;
+  twin_.training_state["train/finished"] = NpzArray::Ints({}, &no);
+  WriteTwin(twin_, path_);
+  EXPECT_EQ(RunProgram({"eval", path_, swing_}).errors.find("warning: " + path_ + ": its training"),
+            0u);
+}
+
 TEST_F(Eval, WritesTheDocumentedJson) {
   const Json json = EvalToJson({swing_});
   ASSERT_EQ(json["levels"].size(), 2u);

@@ -52,6 +52,9 @@ TEST(Usage, BadUsageIsOneLine) {
   ExpectRefused({"eval", "a.npz", "b.npz", "--precision", "half"},
                 "physpring eval: --precision: takes double or float, not 'half' (see physpring "
                 "eval --help)");
+  ExpectRefused({"trian"}, "physpring: unknown command trian (see physpring --help)");
+  ExpectRefused({"export", "a.npz", "-o", ""},
+                "physpring export: --output: takes a name, not '' (see physpring export --help)");
   ExpectRefused({"info"}, "physpring info: file is required (see physpring info --help)");
   const ProgramResult nothing = RunProgram({});
   EXPECT_EQ(nothing.status, 2);

@@ -16,6 +16,7 @@
 #include "twin/effects/registry.h"
 #include "twin/error.h"
 #include "twin/predict.h"
+#include "twin/stability.h"
 #include "twin/topology.h"
 
 namespace physpring {
@@ -163,7 +164,7 @@ class Engine {
     double least = std::numeric_limits<double>::infinity();
     for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
       SpringMassSystem scaled = alike;
-      ScaleToSubsteps(1 / recordings_[0].recording->fps, substeps, kFitSafety, &scaled);
+      ScaleToSubsteps(1 / recordings_[0].recording->fps, substeps, kStepSafety, &scaled);
       EffectProblem problem = MakeProblem(
           EffectModel(CommonFactors(scaled, *recordings_[0].recording), 1, known_), short_);
       const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());

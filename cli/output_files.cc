@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/output_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Links to one file, and other spellings of its path, are the same.
+bool AreSame(const std::string& p, const std::string& q) {
+  std::error_code missing;
+  if (fs::equivalent(p, q, missing) && fs::is_regular_file(p, missing)) return true;
+  return !fs::exists(p, missing) &&
+         fs::weakly_canonical(p, missing) == fs::weakly_canonical(q, missing);
+}
+
+}  // namespace
+
+void ExpectOutputs(const std::vector<std::string>& outputs,
+                   const std::vector<std::string>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    if (output->empty()) continue;
+    for (const std::string& input : inputs) {
+      if (AreSame(*output, input)) {
+        throw Error(fmt::format("{}: is read by this command and cannot be written", *output));
+      }
+    }
+    for (auto other = outputs.begin(); other != output; ++other) {
+      if (!other->empty() && AreSame(*output, *other)) {
+        throw Error(fmt::format("{}: two outputs have this name", *output));
+      }
+    }
+    ExpectFileWritable(*output);
+  }
+}
+
+void ExpectNew(const std::string& path, bool force) {
+  std::error_code missing;
+  if (force || !fs::is_regular_file(path, missing)) return;
+  throw Error(fmt::format("{}: exists; --force overwrites", path));
+}
+
+}  // namespace physpring

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that a command writes, checked before it works for them.
+#ifndef PHYSPRING_CLI_OUTPUT_FILES_H_
+#define PHYSPRING_CLI_OUTPUT_FILES_H_
+
+#include <string>
+#include <vector>
+
+namespace physpring {
+
+// Throws Error if one of `outputs` cannot be written, is one of `inputs`, or is another output.
+// Empty names are options that were not given.
+void ExpectOutputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+
+// Throws Error if there is a file at `path`, unless `force`.
+void ExpectNew(const std::string& path, bool force);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_OUTPUT_FILES_H_
