@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   physpring::AddInfoCommand(app);
   physpring::AddInteriorCommand(app);
   physpring::AddDoctorCommand(app);
-  if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1])) {
+  const auto is_named = [&](const CLI::App* command) { return command->check_name(argv[1]); };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_named).empty()) {
     std::fprintf(stderr, "physpring: unknown command %s (see physpring --help)\n", argv[1]);
     return 2;
   }

@@ -8,6 +8,7 @@
 
 #include "trainer/spring_radius.h"
 #include "trainer/start_system.h"
+#include "twin/stability.h"
 
 namespace physpring {
 namespace {
