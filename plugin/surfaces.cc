@@ -11,6 +11,11 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
+// Part of the overlap with a body that moves which is undone in a step.
+constexpr double kRecovery = 0.2;
+// Of the contact law.
+constexpr double kMostFriction = 2;
+
 Eigen::Map<const Vector> X(const NodeState<double>& node) {
   return Eigen::Map<const Vector>(node.x);
 }
@@ -46,6 +51,7 @@ Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
 void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state) {
   touches_.clear();
   bodies_.clear();
+  recovery_rate_ = kRecovery / model->opt.timestep;
   if (!level_->has_surface) return;
   for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, data->contact[i]);
   // as in twin/contact.h: the ground before the geoms that move
@@ -79,8 +85,13 @@ void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStat
   if (level_->has_contact_radius && model->geom_type[geom] == mjGEOM_SPHERE) {
     gap += model->geom_size[3 * geom] - level_->system.contact_radius[node];
   }
-  touches_.push_back({node, FindBody(model, data, other_body), other_instance >= 0, normal,
-                      X(state[node]), gap, 0});
+  ContactPair<double> law = other_instance >= 0 ? laws_.object : laws_.surface;
+  const int other_geom = contact.geom[1 - node_geom];
+  if (model->geom_priority[other_geom] > model->geom_priority[geom]) {
+    law.friction = std::min(model->geom_friction[3 * other_geom], kMostFriction);
+  }
+  touches_.push_back(
+      {node, FindBody(model, data, other_body), law, normal, X(state[node]), gap, 0});
 }
 
 int Surfaces::FindBody(const mjModel* model, mjData* data, int body) {
@@ -112,11 +123,13 @@ Vector Surfaces::Hit(const Touch& touch, const Vector& x, const Vector& v, doubl
     at_node << -Cross(x - body->centre), Eigen::Matrix3d::Identity();
     surface = at_node * body->velocity;
   }
+  const double gap = touch.gap + touch.normal.dot(x - touch.start) - touch.advanced;
+  // a body that overlaps the node pushes it out
+  if (body != nullptr) surface += recovery_rate_ * std::max(-gap, 0.0) * touch.normal;
   const Vector u = v - surface;
   const double approach = touch.normal.dot(u);
-  const double gap = touch.gap + touch.normal.dot(x - touch.start) - touch.advanced;
   if (gap + h * approach >= 0 || approach >= -kApproach) return v;
-  const Vector after = Impact(u, touch.normal, touch.is_object ? laws_.object : laws_.surface);
+  const Vector after = Impact(u, touch.normal, touch.law);
   if (body == nullptr) return after;
   const double mass = level_->system.mass[touch.node];
   const Eigen::Matrix3d inverse_mass =

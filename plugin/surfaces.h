@@ -6,7 +6,10 @@
 // the surface taken as flat and moving along with its body:
 //   u = v - s,   u' = Impact(u, n),   J = (I / m + W)^-1 (u' - u),   v += J / m
 // s: velocity of the surface, W: inverse mass that the body shows at the node. The body gets -J:
-// its motion goes on from there within the step, and MuJoCo gets the mean force.
+// its motion goes on from there within the step, and MuJoCo gets the mean force. What else drives
+// the body (motors, the other bodies it hits) MuJoCo only adds after this, so a finger that presses
+// steadily creeps a little into the nodes in every step; s therefore has a part, along n, that
+// undoes a fifth of the overlap with a body that moves in each step.
 #ifndef PHYSPRING_PLUGIN_SURFACES_H_
 #define PHYSPRING_PLUGIN_SURFACES_H_
 
@@ -58,8 +61,8 @@ class Surfaces {
   };
   struct Touch {
     int node;
-    int body;         // index in bodies_; -1 = fixed
-    bool is_object;   // a particle of another twin
+    int body;  // index in bodies_; -1 = fixed
+    ContactPair<double> law;
     Vector normal;    // of the surface, towards the node
     Vector start;     // where the node was
     double gap;       // from touching then, m; less than 0: overlap
@@ -76,6 +79,7 @@ class Surfaces {
   std::vector<int> node_of_body_;  // -1: none
   const Level* level_;
   ContactLaws<double> laws_;
+  double recovery_rate_ = 0;  // 1/s
   std::vector<Body> bodies_;
   std::vector<Touch> touches_;
   std::vector<double> jacobian_, solution_;  // 6 x nv

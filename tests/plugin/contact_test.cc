@@ -197,6 +197,43 @@ TEST(Contact, MovingGeomPushesAsInTheSimulator) {
   EXPECT_LT(Greatest(simulation.position() - thrown.system.position - moved), 1e-9);
 }
 
+TEST(Contact, GeomOfHigherPriorityBringsItsFriction) {
+  const double mu = 0.2, speed = 1, h = 1e-4;
+  LevelSceneOptions options = OnFloor(h);
+  options.world = R"(<geom type="plane" size="0 0 1" priority="3" friction="0.2 0 0"/>)";
+  LevelScene scene(Ball(0.01, {0, 0.4, 0, 0, 0}), options);
+  scene.SetState(Eigen::Vector3d(0, 0, 0.01), Eigen::Vector3d(speed, 0, 0));
+  scene.Step(static_cast<int>(1.2 * speed / (mu * kG) / h));
+  EXPECT_NEAR(scene.Positions()(0, 0), speed * speed / (2 * mu * kG), 1e-3);
+}
+
+// Two balls joined by a spring, between two fingers of 0.1 kg that something presses together.
+TEST(Contact, FingersHoldWhatTheyPress) {
+  const double force = 2;  // N, of each finger; the weight is 1 N
+  SpringMassSystem pair = Particles((Points(3, 2) << -0.005, 0.005, 0, 0, 0, 0).finished(), 0.05);
+  pair.springs = {{0, 1}};
+  pair.stiffness = Eigen::VectorXd::Constant(1, 2000);
+  pair.rest_length = Eigen::VectorXd::Constant(1, 0.01);
+  pair.dashpot = Eigen::VectorXd::Constant(1, 5);
+  pair.contact = {0.2, 1, 0, 0, 0};
+  pair.contact_radius.setConstant(0.005);
+  const ModelPtr model = CompileMjcf(
+      LevelMjcf(pair, {.contact = true, .timestep = 2e-3, .substep = 0.25e-3, .world = R"(
+      <body pos="-0.02 0 0"><joint type="slide" axis="1 0 0"/>
+        <geom type="box" size="0.01 0.02 0.02" mass="0.1"/></body>
+      <body pos="0.02 0 0"><joint type="slide" axis="-1 0 0"/>
+        <geom type="box" size="0.01 0.02 0.02" mass="0.1"/></body>)"}));
+  const DataPtr data = MakeData(*model);
+  for (int i = 0; i < 1500; ++i) {
+    data->qfrc_applied[0] = data->qfrc_applied[1] = force;
+    Step(*model, data.get());
+  }
+  const double squeezed = force / pair.stiffness[0];
+  // 3 s without friction are 44 m, and fingers that creep meet in the middle: 20 mm
+  EXPECT_NEAR(data->qpos[4], 0, 3e-3) << "slips";
+  EXPECT_NEAR(data->qpos[0] + data->qpos[1], squeezed, 1e-3) << "sinks in";
+}
+
 TEST(Contact, TwoTwinsBounceOffEachOther) {
   // equal balls head on: they leave with e times their speed
   SpringMassSystem ball = Ball(0, {0, 0, 0.5, 0, 0});
