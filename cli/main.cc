@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
   physpring::AddEvalCommand(app);
   physpring::AddExportCommand(app);
   physpring::AddDiagnoseCommand(app);
+  physpring::AddRolloutCommand(app);
+  physpring::AddMergeCommand(app);
   physpring::AddInfoCommand(app);
   physpring::AddInteriorCommand(app);
   physpring::AddDoctorCommand(app);

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring rollout: a policy on a task, episode after episode -> successes.
+// physpring merge: finished episodes of one sweep or several -> the same tables.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/progress.h"
+#include "cli/rollout_report.h"
+#include "rollout/camera_thread.h"
+#include "rollout/make_policy.h"
+#include "rollout/plugin_library.h"
+#include "rollout/sweep.h"
+#include "rollout/sweep_folder.h"
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+struct Arguments {
+  std::string task, json, save_scene, shard, states = "full";
+  std::string video, quality = "fast";
+  std::vector<std::string> cameras;  // in videos
+  int films = 1;                     // episodes, from the first one
+  SweepOptions sweep;
+};
+
+// A task by its folder, or by a file in it.
+std::string FolderOf(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return path;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// "3/8" as shard and shards.
+CLI::Validator IsShard(SweepOptions* sweep) {
+  return CLI::Validator(
+      [sweep](std::string& text) {
+        int shard = 0, shards = 0, end = 0;
+        const int read = std::sscanf(text.c_str(), "%d/%d%n", &shard, &shards, &end);
+        if (read != 2 || end != static_cast<int>(text.size()) || shard < 1 || shard > shards) {
+          return "takes i/n with i from 1 to n, not '" + text + "'";
+        }
+        sweep->shard = shard;
+        sweep->shards = shards;
+        return std::string();
+      },
+      "");
+}
+
+CLI::Validator TakesPolicy() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return IsPolicy(text)
+                   ? ""
+                   : "takes scripted, random, replay:PATH or ws://HOST:PORT, not '" + text + "'";
+      },
+      "");
+}
+
+void Report(const std::vector<JudgedPolicy>& policies, const std::string& json) {
+  fmt::print("{}", FormatTables(policies));
+  if (!json.empty()) WriteFileAtomically(json, FormatJson(policies));
+}
+
+// out.mp4, or out_level3_00007.mp4 where there are several.
+std::string VideoPath(const Arguments& arguments, int level, int episode) {
+  const SweepOptions& sweep = arguments.sweep;
+  if (sweep.levels.size() == 1 && std::min(arguments.films, sweep.episodes) == 1) {
+    return arguments.video;
+  }
+  const std::filesystem::path path = arguments.video;
+  return (path.parent_path() / fmt::format("{}_level{}_{:05}{}", path.stem().string(), level,
+                                           episode, path.extension().string()))
+      .string();
+}
+
+// Cameras where the policy looks or a video is wanted.
+void AddCameras(const Arguments& arguments, const Task& task, SweepHooks* hooks) {
+  const PictureQuality quality =
+      arguments.quality == "high" ? PictureQuality::kHigh : PictureQuality::kFast;
+  hooks->prepare = [quality, &task](mjModel* model) {
+    PreparePictures(quality, task.width, task.height, model);
+  };
+  hooks->make_viewer = [quality, &arguments](const TaskModel& model, int episode,
+                                             bool images) -> std::unique_ptr<Viewer> {
+    const bool filmed =
+        !arguments.video.empty() && episode < arguments.sweep.first + arguments.films;
+    if (!filmed && !images) return nullptr;
+    const std::string video = filmed ? VideoPath(arguments, model.level, episode) : "";
+    return MakeCameraThread(model, {quality, video, arguments.cameras});
+  };
+}
+
+void Run(const Arguments& arguments) {
+  LoadPluginLibrary();
+  const Task task = ReadTask(FolderOf(arguments.task));
+  if (!arguments.save_scene.empty()) {
+    WriteFileAtomically(arguments.save_scene,
+                        FormatSceneFile(task, arguments.sweep.levels.front()));
+  }
+  const InterruptWatch watch;
+  Progress progress(0);
+  int successes = 0, judged = 0;
+  SweepHooks hooks;
+  AddCameras(arguments, task, &hooks);
+  hooks.stop = [&] { return watch.signal() != 0; };
+  hooks.report = [&](const EpisodeSummary& episode, int done, int all) {
+    successes += episode.success ? 1 : 0;
+    ++judged;
+    progress.Show(
+        static_cast<double>(done) / all,
+        fmt::format("episode {} of {}, {} of {} succeeded", done, all, successes, judged));
+  };
+  SweepOptions options = arguments.sweep;
+  options.states = arguments.states == "full";
+  const Sweep sweep = RunSweep(task, options, hooks);
+  std::set<std::string> warnings(sweep.warnings.begin(), sweep.warnings.end());
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (!sweep.complete) {
+    fmt::print(stderr, "physpring: stopped; {} finished episodes are {}\n", sweep.episodes.size(),
+               options.folder.empty() ? "lost, because there is no --output"
+                                      : "kept in " + options.folder);
+    throw Interrupted{watch.signal()};
+  }
+  if (sweep.skipped > 0) {
+    fmt::print("{} episodes were finished before, in {}\n", sweep.skipped, options.folder);
+  }
+  Report({{task.name, options.policy.text, sweep.episodes}}, arguments.json);
+}
+
+void AddSweepOptions(CLI::App* command, Arguments* arguments) {
+  SweepOptions& sweep = arguments->sweep;
+  command->add_option("--level", sweep.levels, "levels of the twin, as 0,3: the same episodes")
+      ->delimiter(',')
+      ->check(WholeNumberBetween(0, 1000))
+      ->type_name("N,...")
+      ->default_str("0");
+  command
+      ->add_option("--policy", sweep.policy.text,
+                   "scripted (the task's own), random, replay:PATH (a file, or the --output of an "
+                   "earlier run), or ws://HOST:PORT (a server with openpi's protocol)")
+      ->check(TakesPolicy())
+      ->type_name("POLICY")
+      ->capture_default_str();
+  command
+      ->add_option("--patience", sweep.policy.patience,
+                   "longest that a policy server may take for an answer")
+      ->check(NumberBetween(0.001, 1e6))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command->add_option("--episodes", sweep.episodes, "how many")
+      ->check(WholeNumberBetween(1, 1000000))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--first", sweep.first, "number of the first episode")
+      ->check(WholeNumberBetween(0, 1000000))
+      ->type_name("N")
+      ->capture_default_str();
+  AddSeed(command, &sweep.seed, "of starts and policies");
+  command
+      ->add_option("--action-noise", sweep.action_noise,
+                   "standard deviation of an error of the hand's place, constant in an episode")
+      ->check(NumberBetween(0, 1))
+      ->type_name("METRES")
+      ->capture_default_str();
+  AddThreads(command, &sweep.threads, "one episode each");
+  command->add_option("--shard", arguments->shard, "run only every n-th episode, from the i-th on")
+      ->check(IsShard(&sweep))
+      ->type_name("I/N");
+}
+
+void AddPictureOptions(CLI::App* command, Arguments* arguments) {
+  command
+      ->add_option(
+          "--video", arguments->video,
+          "film the first episode (.mp4, or _%04d.png for a picture a frame); needs ffmpeg")
+      ->type_name("FILE");
+  command->add_option("--films", arguments->films, "film so many episodes")
+      ->check(WholeNumberBetween(1, 1000000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--cameras", arguments->cameras,
+                   "in the video, side by side; default: the first one of the task")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  AddChoice(command, "--quality", &arguments->quality, {"fast", "high"},
+            "of pictures; high: shadows, smooth edges, round shapes");
+}
+
+std::vector<JudgedPolicy> ReadFolders(const std::vector<std::string>& folders) {
+  std::map<std::string, std::size_t> known;  // by identity
+  std::vector<JudgedPolicy> policies;
+  std::set<std::tuple<std::string, int, int>> seen;
+  for (const std::string& folder : folders) {
+    const StoredSweep stored = ReadSweepFolder(folder);
+    const auto [place, added] = known.try_emplace(stored.identity, policies.size());
+    if (added) policies.push_back({stored.task, stored.policy, {}});
+    for (const EpisodeSummary& episode : stored.episodes) {
+      if (!seen.insert({stored.identity, episode.level, episode.episode}).second) continue;
+      policies[place->second].episodes.push_back(episode);
+    }
+  }
+  for (JudgedPolicy& policy : policies) {
+    std::sort(policy.episodes.begin(), policy.episodes.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.episode, a.level) < std::pair(b.episode, b.level);
+    });
+  }
+  return policies;
+}
+
+}  // namespace
+
+void AddRolloutCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "rollout", "Runs a policy on a task, episode after episode, and counts successes.");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("task", arguments->task, "folder with task.json")
+      ->required()
+      ->type_name("TASK");
+  AddSweepOptions(command, arguments.get());
+  command
+      ->add_option("-o,--output", arguments->sweep.folder,
+                   "keep episodes here; those that are finished there are not run again")
+      ->type_name("DIR");
+  AddChoice(command, "--states", &arguments->states, {"full", "actions"},
+            "what is kept: states of all frames, or only actions");
+  AddPictureOptions(command, arguments.get());
+  command->add_option("--json", arguments->json, "report to write")->type_name("FILE");
+  command
+      ->add_option("--save-scene", arguments->save_scene,
+                   "write an MJCF file of the scene with the first of the levels in it")
+      ->type_name("FILE.xml");
+  command->callback([arguments] { Run(*arguments); });
+}
+
+void AddMergeCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "merge",
+      "Puts finished episodes of shards together and compares policies: the tables of rollout.");
+  struct MergeArguments {
+    std::vector<std::string> folders;
+    std::string json;
+  };
+  const auto arguments = std::make_shared<MergeArguments>();
+  command->add_option("folders", arguments->folders, "written by rollout --output")
+      ->required()
+      ->type_name("DIR...");
+  command->add_option("--json", arguments->json, "report to write")->type_name("FILE");
+  command->callback([arguments] { Report(ReadFolders(arguments->folders), arguments->json); });
+}
+
+}  // namespace physpring

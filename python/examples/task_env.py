@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A task of `physpring rollout` as an environment in stock MuJoCo, with Gymnasium's interface.
+
+    python task_env.py TASK --level 0 --episode OUT/level0/episode_00000
+
+runs the episode that `physpring rollout TASK -o OUT` has kept once more and says how far its states
+are from those in C++. Needs the packages mujoco-core and numpy; and the engine plugin: installed
+(docs/plugin.md), or named by the environment variable PHYSPRING_PLUGIN. It is written to be read and
+changed: no line of it knows more than docs/rollout.md.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+
+import mujoco
+import numpy as np
+
+
+def pose(fields):
+    """Position [m] and quaternion w x y z of {"position": ..., "quaternion": ...}."""
+    quaternion = np.array(fields.get('quaternion', [1, 0, 0, 0]), dtype=float)
+    return np.array(fields.get('position', [0, 0, 0]), dtype=float), unit(quaternion)
+
+
+def unit(quaternion):
+    return quaternion / np.linalg.norm(quaternion)
+
+
+def rotation(quaternion):
+    """3 x 3 matrix of a unit quaternion."""
+    matrix = np.empty(9)
+    mujoco.mju_quat2Mat(matrix, quaternion)
+    return matrix.reshape(3, 3)
+
+
+def angle_between(first, second):
+    """The angle [rad] that turns one orientation into the other."""
+    turn, back = np.empty(4), np.empty(4)
+    mujoco.mju_negQuat(back, second)
+    mujoco.mju_mulQuat(turn, first, back)
+    return 2 * math.atan2(np.linalg.norm(turn[1:]), abs(turn[0]))
+
+
+def slerp(first, second, share):
+    """Along the shortest turn from the first orientation (share 0) to the second (1)."""
+    cosine = float(first @ second)
+    if abs(cosine) >= 1 - np.finfo(float).eps:
+        weights = 1 - share, share
+    else:
+        angle = math.acos(abs(cosine))
+        weights = (math.sin((1 - share) * angle) / math.sin(angle),
+                   math.sin(share * angle) / math.sin(angle))
+    return weights[0] * first + math.copysign(weights[1], cosine) * second
+
+
+class TaskEnv:
+    """reset() and step(action) as in gymnasium.Env; actions as docs/rollout.md describes them.
+
+    An observation is {"robot": as in episodes' files, "nodes": (N, 3) places of the object's nodes
+    [m]}. There is no reward: success is judged by `physpring rollout`.
+    """
+
+    def __init__(self, folder, level=0):
+        folder = pathlib.Path(folder)
+        self.task = json.loads((folder / 'task.json').read_text())
+        self.robot = self.task['robot']
+        if self.robot.get('kind', 'cartesian') != 'cartesian':
+            raise ValueError('this example drives robots of the kind cartesian')
+        self.rate = self.task.get('rate', 30)
+        self.frames = self.task['frames']
+        self.settle = self.task.get('settle', 30)
+
+        # the level goes into the scene, in a frame at the object's place
+        scene = mujoco.MjSpec.from_file(str(folder / self.task.get('scene', 'scene.xml')))
+        level_spec = mujoco.MjSpec.from_file(str(folder / self.task['levels'][level]))
+        body = level_spec.worldbody.first_body().name
+        self.object = pose(self.task.get('object', {}))
+        scene.attach(level_spec, prefix='',
+                     frame=scene.worldbody.add_frame(pos=self.object[0], quat=self.object[1]))
+        self.model = scene.compile()
+        self.steps = math.ceil(1 / self.rate / self.model.opt.timestep - 1e-6)
+        self.model.opt.timestep = 1 / self.rate / self.steps
+        self.data = mujoco.MjData(self.model)
+
+        # the nodes: children of one fixed body, on three slide joints
+        parent = self.model.body(body).id
+        nodes = [child for child in range(parent + 1, self.model.nbody)
+                 if self.model.body_parentid[child] == parent and self.model.body_jntnum[child] == 3]
+        self.reference = self.model.body_pos[nodes].copy()
+        first = self.model.jnt_qposadr[self.model.body_jntadr[nodes]]
+        self.node_qpos = first[:, None] + np.arange(3)
+        self.parent = self.model.body_pos[parent].copy(), self.model.body_quat[parent].copy()
+
+        self.mocap = self.model.body(self.robot['target']).mocapid[0]
+        self.hand = self.model.site(self.robot['hand']).id
+        self.fingers = [self.model.actuator(name).id for name in self.robot.get('actuators', [])]
+        self.open = np.array(self.robot.get('open', []), dtype=float)
+        self.closed = np.array(self.robot.get('closed', []), dtype=float)
+
+    def reset(self, *, seed=None, options=None):
+        """options["start"]: where the object starts, as in an episode's JSON; else a random cell of
+        the task's grid."""
+        start = (options or {}).get('start')
+        place = pose(start) if start else self._random_start(np.random.default_rng(seed))
+        mujoco.mj_resetData(self.model, self.data)
+        world = self.reference @ rotation(place[1]).T + place[0]
+        local = (world - self.parent[0]) @ rotation(self.parent[1])
+        self.data.qpos[self.node_qpos] = local - self.reference
+        self.frame = 0
+        self.target = (self.data.mocap_pos[self.mocap].copy(),
+                       unit(self.data.mocap_quat[self.mocap]), 0.0)
+        self._place(*self.target)
+        home = self.robot.get('home') or np.hstack(self.target)
+        for _ in range(self.settle):
+            self._run_frame(np.asarray(home, dtype=float))
+        mujoco.mj_kinematics(self.model, self.data)
+        return self._observe(), {}
+
+    def step(self, action):
+        self._run_frame(np.asarray(action, dtype=float))
+        self.frame += 1
+        return self._observe(), 0.0, False, self.frame >= self.frames, {}
+
+    def _random_start(self, random):
+        starts = self.task.get('starts', {})
+        shift = [random.choice(starts.get(axis, [0])) for axis in ('x', 'y')]
+        noise = starts.get('noise_xy', 0)
+        shift = np.array([*(shift + random.uniform(-noise, noise, 2)), 0])
+        noise = starts.get('noise_yaw', 0)
+        yaw = math.radians(random.choice(starts.get('yaw', [0])) + random.uniform(-noise, noise))
+        orientation = np.empty(4)
+        turn = np.array([math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)])
+        mujoco.mju_mulQuat(orientation, turn, self.object[1])
+        return self.object[0] + shift, orientation
+
+    def _limit(self, position, quaternion, gripper):
+        """The next target: no further from the last than the robot's speeds allow."""
+        frame = 1 / self.rate
+
+        def share(way, speed):
+            return speed * frame / way if way > speed * frame else 1.0
+
+        at, orientation, grip = self.target
+        way = position - at
+        turn = angle_between(orientation, quaternion)
+        closing = min(max(gripper, 0.0), 1.0) - grip
+        turn_speed = math.radians(self.robot.get('turn_speed', 180))
+        return (at + share(np.linalg.norm(way), self.robot.get('speed', 0.5)) * way,
+                slerp(orientation, quaternion, share(turn, turn_speed)),
+                grip + share(abs(closing), self.robot.get('gripper_speed', 2)) * closing)
+
+    def _place(self, position, quaternion, gripper):
+        self.data.mocap_pos[self.mocap] = position
+        self.data.mocap_quat[self.mocap] = quaternion
+        self.data.ctrl[self.fingers] = self.open + gripper * (self.closed - self.open)
+
+    def _run_frame(self, action):
+        position, quaternion, gripper = self.target
+        to = self._limit(action[:3], unit(action[3:7]), action[7])
+        for step in range(1, self.steps + 1):
+            share = step / self.steps
+            self._place(position + share * (to[0] - position),
+                        slerp(quaternion, to[1], share), gripper + share * (to[2] - gripper))
+            mujoco.mj_step(self.model, self.data)
+        self.target = to
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def _observe(self):
+        local = self.reference + self.data.qpos[self.node_qpos]
+        nodes = local @ rotation(self.parent[1]).T + self.parent[0]
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, self.data.site_xmat[self.hand])
+        robot = np.hstack([self.data.site_xpos[self.hand], quaternion, self.target[2]])
+        return {'robot': robot, 'nodes': nodes}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    parser.add_argument('task', help='folder with task.json')
+    parser.add_argument('--level', type=int, default=0)
+    parser.add_argument('--episode', required=True, help='file of an episode, without its ending')
+    arguments = parser.parse_args()
+    if os.environ.get('PHYSPRING_PLUGIN'):
+        mujoco.mj_loadPluginLibrary(os.environ['PHYSPRING_PLUGIN'])
+
+    env = TaskEnv(arguments.task, arguments.level)
+    verdict = json.loads(pathlib.Path(arguments.episode + '.json').read_text())
+    arrays = np.load(arguments.episode + '.npz')
+    observation, _ = env.reset(options={'start': verdict['start']})
+    observations = [observation]
+    for action in arrays['actions']:
+        observations.append(env.step(action)[0])
+    nodes = max(np.abs(o['nodes'] - kept).max() for o, kept in zip(observations, arrays['nodes']))
+    robot = max(np.abs(o['robot'] - kept).max() for o, kept in zip(observations, arrays['robot']))
+    moved = np.abs(observations[-1]['nodes'] - observations[0]['nodes']).max()
+    print(f'{len(arrays["actions"])} frames; the object moved by up to {moved:.3g} m; '
+          f'states differ by up to {max(nodes, robot):.3g}')
+    return 0 if max(nodes, robot) < 1e-9 else 1
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

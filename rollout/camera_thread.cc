@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/camera_thread.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "rollout/video_file.h"
+#include "twin/error.h"
+#include "twin/quote.h"
+
+namespace physpring {
+namespace {
+
+constexpr std::size_t kMostWaiting = 8;  // states, before Show waits
+
+using Images = std::map<std::string, Image>;
+
+// What places everything in the scene.
+struct Snapshot {
+  std::vector<double> qpos, mocap_pos, mocap_quat;
+};
+
+Snapshot Take(const mjModel& model, const mjData& data) {
+  return {{data.qpos, data.qpos + model.nq},
+          {data.mocap_pos, data.mocap_pos + 3 * model.nmocap},
+          {data.mocap_quat, data.mocap_quat + 4 * model.nmocap}};
+}
+
+void Put(const Snapshot& snapshot, const mjModel& model, mjData* data) {
+  std::copy(snapshot.qpos.begin(), snapshot.qpos.end(), data->qpos);
+  std::copy(snapshot.mocap_pos.begin(), snapshot.mocap_pos.end(), data->mocap_pos);
+  std::copy(snapshot.mocap_quat.begin(), snapshot.mocap_quat.end(), data->mocap_quat);
+  mj_kinematics(&model, data);
+  mj_comPos(&model, data);
+  mj_camlight(&model, data);
+  mj_flex(&model, data);
+  mj_tendon(&model, data);
+}
+
+Image SideBySide(const std::vector<Image>& images) {
+  Image wide{0, images[0].height, {}};
+  for (const Image& image : images) wide.width += image.width;
+  for (int y = 0; y < wide.height; ++y) {
+    for (const Image& image : images) {
+      const auto row = image.rgb.begin() + static_cast<std::ptrdiff_t>(3) * image.width * y;
+      wide.rgb.insert(wide.rgb.end(), row, row + static_cast<std::ptrdiff_t>(3) * image.width);
+    }
+  }
+  return wide;
+}
+
+class CameraThread : public Viewer {
+ public:
+  CameraThread(const TaskModel& model, const CameraOptions& options)
+      : task_(*model.task), model_(*model.model), options_(options) {
+    for (const std::string& name : task_.cameras) cameras_.push_back(Camera(name));
+    std::vector<std::string> shown = options_.video_shows;
+    if (shown.empty() && !task_.cameras.empty()) shown.push_back(task_.cameras.front());
+    for (const std::string& name : shown) shown_.push_back(Camera(name));
+    if (!options_.video.empty()) {
+      if (shown_.empty()) throw Error(task_.folder + "/task.json: names no cameras for a video");
+      video_.emplace(options_.video, task_.width * static_cast<int>(shown_.size()), task_.height,
+                     task_.rate);
+    }
+    std::promise<void> ready;
+    std::future<void> outcome = ready.get_future();
+    thread_ = std::thread([this, &ready] { Work(&ready); });
+    try {
+      outcome.get();
+    } catch (...) {
+      thread_.join();
+      throw;
+    }
+  }
+
+  ~CameraThread() override {
+    if (thread_.joinable()) End();
+  }
+
+  void Show(const mjData& data) override {
+    if (!video_) return;
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return jobs_.size() < kMostWaiting || failure_; });
+    ThrowFailure();
+    jobs_.push_back({Take(model_, data), nullptr});
+    changed_.notify_all();
+  }
+
+  Images Look(const mjData& data) override {
+    std::promise<Images> seen;
+    std::future<Images> images = seen.get_future();
+    {
+      const std::lock_guard lock(mutex_);
+      ThrowFailure();
+      jobs_.push_back({Take(model_, data), &seen});
+      changed_.notify_all();
+    }
+    return images.get();
+  }
+
+  void Finish() override {
+    End();
+    ThrowFailure();
+    if (video_) video_->Finish();
+  }
+
+  double seconds() const override {
+    const std::lock_guard lock(mutex_);
+    return seconds_;
+  }
+
+ private:
+  struct Job {
+    Snapshot snapshot;
+    std::promise<Images>* seen;  // null: a picture of the video
+  };
+
+  int Camera(const std::string& name) const {
+    const int camera = mj_name2id(&model_, mjOBJ_CAMERA, name.c_str());
+    if (camera < 0) throw Error(fmt::format("{}: has no camera {}", task_.scene, Quote(name)));
+    return camera;
+  }
+
+  void ThrowFailure() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+  void End() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+      changed_.notify_all();
+    }
+    thread_.join();
+  }
+
+  // The thread.
+  void Work(std::promise<void>* ready) {
+    bool told = false;
+    try {
+      Painter painter(model_, options_.quality, task_.width, task_.height);
+      const DataPtr data = MakeData(model_);
+      ready->set_value();
+      told = true;
+      while (std::optional<Job> job = Next()) {
+        const auto start = std::chrono::steady_clock::now();
+        Do(*job, data.get(), &painter);
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+        const std::lock_guard lock(mutex_);
+        seconds_ += taken.count();
+      }
+    } catch (...) {
+      if (!told) {
+        ready->set_exception(std::current_exception());
+        return;
+      }
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+      for (Job& job : jobs_) {
+        if (job.seen) job.seen->set_exception(failure_);
+      }
+      jobs_.clear();
+      changed_.notify_all();
+    }
+  }
+
+  std::optional<Job> Next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !jobs_.empty() || ended_; });
+    if (jobs_.empty()) return std::nullopt;
+    Job job = std::move(jobs_.front());
+    jobs_.pop_front();
+    changed_.notify_all();
+    return job;
+  }
+
+  void Do(const Job& job, mjData* data, Painter* painter) {
+    Put(job.snapshot, model_, data);
+    if (!job.seen) {
+      std::vector<Image> images;
+      for (const int camera : shown_) images.push_back(painter->Paint(data, camera));
+      video_->Add(SideBySide(images));
+      return;
+    }
+    Images images;
+    try {
+      for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        images[task_.cameras[i]] = painter->Paint(data, cameras_[i]);
+      }
+    } catch (...) {
+      return job.seen->set_exception(std::current_exception());
+    }
+    job.seen->set_value(std::move(images));
+  }
+
+  const Task& task_;
+  const mjModel& model_;
+  const CameraOptions options_;
+  std::vector<int> cameras_, shown_;
+  std::optional<VideoFile> video_;  // the thread's until it has ended
+  mutable std::mutex mutex_;        // of what follows
+  std::condition_variable changed_;
+  std::deque<Job> jobs_;
+  bool ended_ = false;
+  double seconds_ = 0;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+std::unique_ptr<Viewer> MakeCameraThread(const TaskModel& model, const CameraOptions& options) {
+  return std::make_unique<CameraThread>(model, options);
+}
+
+}  // namespace physpring

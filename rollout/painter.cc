@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/painter.h"
+
+#include <algorithm>
+
+#include "rollout/mujoco_log.h"
+
+namespace physpring {
+
+void PreparePictures(PictureQuality quality, int width, int height, mjModel* model) {
+  model->vis.global.offwidth = std::max(model->vis.global.offwidth, width);
+  model->vis.global.offheight = std::max(model->vis.global.offheight, height);
+  if (quality == PictureQuality::kHigh) return;
+  model->vis.quality.offsamples = 0;
+  model->vis.quality.shadowsize = 0;
+  model->vis.quality.numslices = 8;
+  model->vis.quality.numstacks = 4;
+  model->vis.quality.numquads = 1;
+}
+
+Painter::Painter(const mjModel& model, PictureQuality quality, int width, int height)
+    : model_(model), width_(width), height_(height), off_screen_(width, height) {
+  constexpr int kSpare = 1000;  // geoms besides the model's own
+  mjv_defaultOption(&option_);
+  mjv_defaultScene(&scene_);
+  mjr_defaultContext(&context_);
+  mjv_makeScene(&model_, &scene_, model_.ngeom + 2 * model_.ntendon + model_.nsite + kSpare);
+  if (quality == PictureQuality::kFast) {
+    scene_.flags[mjRND_SHADOW] = 0;
+    scene_.flags[mjRND_REFLECTION] = 0;
+    scene_.flags[mjRND_HAZE] = 0;
+  }
+  CatchMujoco([&] {
+    mjr_makeContext(&model_, &context_, mjFONTSCALE_100);
+    mjr_setBuffer(mjFB_OFFSCREEN, &context_);
+  });
+}
+
+Painter::~Painter() {
+  mjr_freeContext(&context_);
+  mjv_freeScene(&scene_);
+}
+
+Image Painter::Paint(mjData* data, int camera) {
+  mjvCamera view;
+  mjv_defaultCamera(&view);
+  view.type = mjCAMERA_FIXED;
+  view.fixedcamid = camera;
+  const mjrRect area{0, 0, width_, height_};
+  Image image{width_, height_, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(width_);
+  std::vector<unsigned char> upwards(row * static_cast<std::size_t>(height_));
+  CatchMujoco([&] {
+    mjv_updateScene(&model_, data, &option_, nullptr, &view, mjCAT_ALL, &scene_);
+    mjr_render(area, &scene_, &context_);
+    mjr_readPixels(upwards.data(), nullptr, area, &context_);
+  });
+  // OpenGL begins with the bottom row
+  image.rgb.reserve(upwards.size());
+  for (int y = height_ - 1; y >= 0; --y) {
+    const auto from = upwards.begin() + static_cast<std::ptrdiff_t>(row) * y;
+    image.rgb.insert(image.rgb.end(), from, from + static_cast<std::ptrdiff_t>(row));
+  }
+  return image;
+}
+
+}  // namespace physpring

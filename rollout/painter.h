@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a MuJoCo scene, drawn off-screen by MuJoCo's classic renderer. One thread's.
+#ifndef PHYSPRING_ROLLOUT_PAINTER_H_
+#define PHYSPRING_ROLLOUT_PAINTER_H_
+
+#include <mujoco/mujoco.h>
+
+#include <string>
+
+#include "rollout/off_screen.h"
+#include "rollout/policy.h"
+
+namespace physpring {
+
+enum class PictureQuality {
+  kFast,  // no shadows, reflections or multisampling, round things with few faces
+  kHigh,  // what the scene asks for
+};
+
+// Sets what the model says about drawing, for pictures of this size. Before any Painter of it.
+void PreparePictures(PictureQuality quality, int width, int height, mjModel* model);
+
+class Painter {
+ public:
+  // The model lives longer. Throws Error where OSMesa is missing.
+  Painter(const mjModel& model, PictureQuality quality, int width, int height);
+  ~Painter();
+  Painter(const Painter&) = delete;
+  Painter& operator=(const Painter&) = delete;
+
+  // The scene as `data` has it, seen by a camera of the model.
+  Image Paint(mjData* data, int camera);
+
+ private:
+  const mjModel& model_;
+  int width_, height_;
+  OffScreen off_screen_;
+  mjvOption option_;
+  mjvScene scene_;
+  mjrContext context_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_ROLLOUT_PAINTER_H_

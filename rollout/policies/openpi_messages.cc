@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/policies/openpi_messages.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <msgpack.hpp>
+#include <vector>
+
+#include "twin/quote.h"
+
+namespace physpring {
+namespace {
+
+using Packer = msgpack::packer<msgpack::sbuffer>;
+
+void PackBytes(const void* bytes, std::size_t size, Packer* packer) {
+  packer->pack_bin(static_cast<std::uint32_t>(size));
+  packer->pack_bin_body(static_cast<const char*>(bytes), static_cast<std::uint32_t>(size));
+}
+
+void PackKey(const char* key, Packer* packer) { PackBytes(key, std::strlen(key), packer); }
+
+void PackArray(const void* data, std::size_t bytes, const char* type, const std::vector<int>& shape,
+               Packer* packer) {
+  packer->pack_map(4);
+  PackKey("__ndarray__", packer);
+  packer->pack_true();
+  PackKey("data", packer);
+  PackBytes(data, bytes, packer);
+  PackKey("dtype", packer);
+  packer->pack(std::string(type));
+  PackKey("shape", packer);
+  packer->pack(shape);
+}
+
+msgpack::object_handle Unpack(std::string_view message) {
+  constexpr std::size_t kMostItems = 1 << 20, kMostBytes = 1 << 28, kDeepest = 16;
+  const msgpack::unpack_limit limit(kMostItems, kMostItems, kMostBytes, kMostBytes, kMostBytes,
+                                    kDeepest);
+  try {
+    return msgpack::unpack(message.data(), message.size(), nullptr, nullptr, limit);
+  } catch (const msgpack::unpack_error& error) {
+    throw PolicyError(fmt::format("the policy server's message is not msgpack: {}", error.what()));
+  }
+}
+
+// Text or bytes.
+std::string_view Text(const msgpack::object& object) {
+  if (object.type == msgpack::type::STR) return {object.via.str.ptr, object.via.str.size};
+  if (object.type == msgpack::type::BIN) return {object.via.bin.ptr, object.via.bin.size};
+  return {};
+}
+
+// The value of a key of a map, or null.
+const msgpack::object* Find(const msgpack::object& map, std::string_view key) {
+  if (map.type != msgpack::type::MAP) return nullptr;
+  for (std::uint32_t i = 0; i < map.via.map.size; ++i) {
+    if (Text(map.via.map.ptr[i].key) == key) return &map.via.map.ptr[i].val;
+  }
+  return nullptr;
+}
+
+// Little-endian numbers as doubles, whatever their alignment.
+template <class Number>
+std::vector<double> Numbers(std::string_view bytes) {
+  std::vector<double> numbers(bytes.size() / sizeof(Number));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    Number number;
+    std::memcpy(&number, bytes.data() + i * sizeof(Number), sizeof(Number));
+    numbers[i] = static_cast<double>(number);
+  }
+  return numbers;
+}
+
+std::vector<std::uint64_t> Shape(const msgpack::object& object) {
+  std::vector<std::uint64_t> shape;
+  if (object.type != msgpack::type::ARRAY) return shape;
+  for (std::uint32_t i = 0; i < object.via.array.size; ++i) {
+    const msgpack::object& extent = object.via.array.ptr[i];
+    if (extent.type != msgpack::type::POSITIVE_INTEGER) return {};
+    shape.push_back(extent.via.u64);
+  }
+  return shape;
+}
+
+}  // namespace
+
+std::string EncodeObservation(const Observation& observation, const std::string& prompt) {
+  msgpack::sbuffer buffer;
+  Packer packer(buffer);
+  packer.pack_map(3);
+  packer.pack(std::string("images"));
+  packer.pack_map(static_cast<std::uint32_t>(observation.images.size()));
+  for (const auto& [camera, image] : observation.images) {
+    packer.pack(camera);
+    PackArray(image.rgb.data(), image.rgb.size(), "|u1", {image.height, image.width, 3}, &packer);
+  }
+  packer.pack(std::string("state"));
+  const Eigen::VectorXd& state = observation.robot;
+  PackArray(state.data(), sizeof(double) * static_cast<std::size_t>(state.size()), "<f8",
+            {static_cast<int>(state.size())}, &packer);
+  packer.pack(std::string("prompt"));
+  packer.pack(prompt);
+  return {buffer.data(), buffer.size()};
+}
+
+Eigen::MatrixXd DecodeActions(std::string_view message, int numbers) {
+  const msgpack::object_handle answer = Unpack(message);
+  const msgpack::object* actions = Find(answer.get(), "actions");
+  if (!actions) throw PolicyError("the policy server's answer has no actions");
+  const msgpack::object* data = Find(*actions, "data");
+  const msgpack::object* type = Find(*actions, "dtype");
+  const msgpack::object* extents = Find(*actions, "shape");
+  if (!Find(*actions, "__ndarray__") || !data || !type || !extents) {
+    throw PolicyError("the policy server's actions are no NumPy array");
+  }
+  std::vector<double> values;
+  if (Text(*type) == "<f4") {
+    values = Numbers<float>(Text(*data));
+  } else if (Text(*type) == "<f8") {
+    values = Numbers<double>(Text(*data));
+  } else {
+    throw PolicyError(fmt::format("the policy server's actions are of type {}, expected <f4 or <f8",
+                                  Quote(Text(*type))));
+  }
+  const std::vector<std::uint64_t> shape = Shape(*extents);
+  const auto size = static_cast<std::uint64_t>(numbers);
+  if (shape.size() != 2 || shape[0] == 0 || shape[0] > values.size() || shape[1] != size ||
+      shape[0] * shape[1] != values.size()) {
+    throw PolicyError(fmt::format("the policy server's actions have shape ({}), expected (n, {})",
+                                  fmt::join(shape, ", "), numbers));
+  }
+  return Eigen::Map<const Eigen::MatrixXd>(values.data(), numbers,
+                                           static_cast<Eigen::Index>(shape[0]));
+}
+
+void CheckMetadata(std::string_view message) {
+  const msgpack::object_handle metadata = Unpack(message);
+  if (metadata.get().type == msgpack::type::MAP) return;
+  throw PolicyError("the policy server does not begin with metadata, as openpi's do");
+}
+
+}  // namespace physpring

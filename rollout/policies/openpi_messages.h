@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The messages of openpi's policy servers: msgpack, with NumPy arrays as maps
+//   {b"__ndarray__": true, b"data": bytes, b"dtype": "<f4", b"shape": [50, 8]},
+// whose keys are bytes (openpi-client, msgpack_numpy.py).
+#ifndef PHYSPRING_ROLLOUT_POLICIES_OPENPI_MESSAGES_H_
+#define PHYSPRING_ROLLOUT_POLICIES_OPENPI_MESSAGES_H_
+
+#include <string>
+#include <string_view>
+
+#include "rollout/policy.h"
+
+namespace physpring {
+
+// A request: {"images": {camera: height x width x 3 of uint8}, "state": float64, "prompt": text}.
+std::string EncodeObservation(const Observation& observation, const std::string& prompt);
+
+// The chunk of actions of an answer, {"actions": (frames, numbers) of a float type, ...}, as
+// numbers x frames. Throws PolicyError unless it is that, with `numbers` numbers.
+Eigen::MatrixXd DecodeActions(std::string_view message, int numbers);
+
+// Throws PolicyError unless the message is a map: what a server sends when one connects.
+void CheckMetadata(std::string_view message);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_ROLLOUT_POLICIES_OPENPI_MESSAGES_H_

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace physpring {
+namespace {
+
+Pose MocapPose(const mjModel& model, const mjData& data, int mocap) {
+  static_cast<void>(model);
+  const double* q = data.mocap_quat + 4 * mocap;
+  return {Eigen::Map<const Eigen::Vector3d>(data.mocap_pos + 3 * mocap),
+          Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized()};
+}
+
+Pose Between(const Pose& from, const Pose& to, double share) {
+  return {from.position + share * (to.position - from.position),
+          from.orientation.slerp(share, to.orientation)};
+}
+
+}  // namespace
+
+Simulation::Simulation(const TaskModel& task_model)
+    : model_(task_model), data_(MakeData(*task_model.model)) {}
+
+void Simulation::Reset(const EpisodeStart& start) {
+  const Task& task = *model_.task;
+  const mjModel& model = *model_.model;
+  mj_resetData(&model, data_.get());
+
+  // each node to its place at the start, by its slide joints
+  const Pose& object = start.object;
+  const Points nodes = model_.parent.ToLocal(object.ToWorld(model_.reference)) - model_.reference;
+  for (int i = 0; i < model_.node_count(); ++i) {
+    Eigen::Map<Eigen::Vector3d>(data_->qpos + model_.node_qpos[i]) = nodes.col(i);
+  }
+  const SpringMassSystem& dense = task.twin.levels[0].system;
+  lift_.emplace(task.twin, model_.level,
+                object.ToWorld(dense.position.leftCols(dense.node_count())));
+
+  Eigen::VectorXd home = task.robot.home;
+  if (task.robot.kind == RobotKind::kCartesian) {
+    command_ = {MocapPose(model, *data_, model_.target), 0};
+    Place(command_);
+    if (home.size() == 0) home = CartesianAction(command_.target, 0);
+  } else if (home.size() == 0) {
+    home = Robot();
+  }
+  for (int frame = 0; frame < task.settle; ++frame) RunFrame(home);
+  mj_kinematics(&model, data_.get());
+}
+
+Simulation::Command Simulation::Limit(const Command& wish) const {
+  const RobotOptions& robot = model_.task->robot;
+  const double frame = 1 / model_.task->rate;  // s
+  const auto share = [&](double way, double speed) {
+    return way > speed * frame ? speed * frame / way : 1.0;
+  };
+  Command command;
+  const Eigen::Vector3d way = wish.target.position - command_.target.position;
+  command.target.position = command_.target.position + share(way.norm(), robot.speed) * way;
+  const double turn = command_.target.orientation.angularDistance(wish.target.orientation);
+  command.target.orientation =
+      command_.target.orientation.slerp(share(turn, robot.turn_speed), wish.target.orientation);
+  const double grip = std::clamp(wish.gripper, 0.0, 1.0) - command_.gripper;
+  command.gripper = command_.gripper + share(std::abs(grip), robot.gripper_speed) * grip;
+  return command;
+}
+
+void Simulation::Place(const Command& command) {
+  const RobotOptions& robot = model_.task->robot;
+  const Eigen::Quaterniond& q = command.target.orientation;
+  const double quaternion[] = {q.w(), q.x(), q.y(), q.z()};
+  mju_copy3(data_->mocap_pos + 3 * model_.target, command.target.position.data());
+  mju_copy4(data_->mocap_quat + 4 * model_.target, quaternion);
+  for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    data_->ctrl[model_.actuators[i]] =
+        robot.open[k] + command.gripper * (robot.closed[k] - robot.open[k]);
+  }
+}
+
+void Simulation::RunFrame(const Eigen::VectorXd& action) {
+  const mjModel& model = *model_.model;
+  if (model_.task->robot.kind == RobotKind::kJoints) {
+    for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
+      data_->ctrl[model_.actuators[i]] = action[static_cast<Eigen::Index>(i)];
+    }
+    for (int step = 0; step < model_.steps; ++step) Step(model, data_.get());
+  } else {
+    const Command from = command_;
+    const Pose wish{action.head<3>(),
+                    Eigen::Quaterniond(action[3], action[4], action[5], action[6]).normalized()};
+    const Command to = Limit({wish, action[7]});
+    for (int step = 1; step <= model_.steps; ++step) {
+      const double share = static_cast<double>(step) / model_.steps;
+      Place({Between(from.target, to.target, share),
+             from.gripper + share * (to.gripper - from.gripper)});
+      Step(model, data_.get());
+    }
+    command_ = to;
+  }
+  mj_kinematics(&model, data_.get());
+}
+
+Points Simulation::Nodes() const {
+  Points local = model_.reference;
+  for (int i = 0; i < model_.node_count(); ++i) {
+    local.col(i) += Eigen::Map<const Eigen::Vector3d>(data_->qpos + model_.node_qpos[i]);
+  }
+  return model_.parent.ToWorld(local);
+}
+
+Points Simulation::Particles() const { return lift_->Apply(Nodes()); }
+
+Eigen::VectorXd Simulation::Robot() const {
+  if (model_.task->robot.kind == RobotKind::kJoints) {
+    Eigen::VectorXd joints(static_cast<Eigen::Index>(model_.joint_qpos.size()));
+    for (Eigen::Index i = 0; i < joints.size(); ++i) {
+      joints[i] = data_->qpos[model_.joint_qpos[static_cast<std::size_t>(i)]];
+    }
+    return joints;
+  }
+  double quaternion[4];
+  mju_mat2Quat(quaternion, data_->site_xmat + 9 * model_.hand);
+  Eigen::VectorXd robot(8);
+  robot << Eigen::Map<const Eigen::Vector3d>(data_->site_xpos + 3 * model_.hand),
+      Eigen::Map<const Eigen::Vector4d>(quaternion), command_.gripper;
+  return robot;
+}
+
+SuccessRule::Verdict Simulation::Judge(const Points& particles) const {
+  if (model_.success_body == 0) return model_.success->Judge(particles);
+  const double* q = data_->xquat + 4 * model_.success_body;
+  const Pose body{Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * model_.success_body),
+                  Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized()};
+  return model_.success->Judge(body.ToLocal(particles));
+}
+
+}  // namespace physpring

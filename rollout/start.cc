@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/start.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace physpring {
+namespace {
+
+// Standard distributions differ between libraries; these do not.
+double Uniform(std::mt19937_64* random) {  // in [0, 1)
+  return static_cast<double>((*random)() >> 11) * 0x1p-53;
+}
+
+double Normal(std::mt19937_64* random) {  // Box and Muller
+  const double radius = std::sqrt(-2 * std::log(1 - Uniform(random)));
+  return radius * std::cos(2 * std::numbers::pi * Uniform(random));
+}
+
+}  // namespace
+
+EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode, double action_noise) {
+  const auto word = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits); };
+  std::seed_seq mix{word(seed), word(seed >> 32), word(static_cast<std::uint64_t>(episode))};
+  std::mt19937_64 random(mix);
+
+  const StartOptions& starts = task.starts;
+  const auto around = [&](double noise) { return noise * (2 * Uniform(&random) - 1); };
+  std::size_t cell = static_cast<std::size_t>(episode % starts.cells());
+  const double yaw = starts.yaw[cell % starts.yaw.size()] + around(starts.noise_yaw);
+  cell /= starts.yaw.size();
+  const double y = starts.y[cell % starts.y.size()] + around(starts.noise_xy);
+  cell /= starts.y.size();
+  const double x = starts.x[cell] + around(starts.noise_xy);
+
+  EpisodeStart start;
+  start.episode = episode;
+  start.object.position = task.object.position + Eigen::Vector3d(x, y, 0);
+  start.object.orientation = (Yaw(yaw) * task.object.orientation).normalized();
+  const Eigen::Vector3d normal(Normal(&random), Normal(&random), Normal(&random));
+  if (action_noise > 0) start.action_offset = action_noise * normal;
+  start.seed = random();
+  return start;
+}
+
+}  // namespace physpring

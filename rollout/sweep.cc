@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/sweep.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "rollout/make_policy.h"
+#include "rollout/sweep_folder.h"
+
+namespace physpring {
+namespace {
+
+struct Job {
+  int episode = 0;
+  const TaskModel* model = nullptr;
+};
+
+// What the threads share.
+class Queue {
+ public:
+  Queue(const Task& task, const SweepOptions& options, const SweepHooks& hooks,
+        std::vector<Job> jobs, int finished, Sweep* sweep)
+      : task_(task),
+        options_(options),
+        hooks_(hooks),
+        jobs_(std::move(jobs)),
+        finished_(finished),
+        sweep_(*sweep) {}
+
+  void Run() {
+    const auto count = std::min<std::size_t>(std::max(1, options_.threads), jobs_.size());
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { Work(); });
+    for (std::thread& thread : threads) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  // Jobs until there are none, or one of the threads failed.
+  void Work() {
+    std::map<int, Simulation> simulations;  // by level
+    try {
+      for (std::size_t i = next_++; i < jobs_.size() && !stopped_; i = next_++) {
+        if (hooks_.stop && hooks_.stop()) {
+          stopped_ = true;
+          const std::lock_guard lock(mutex_);
+          sweep_.complete = false;
+          return;
+        }
+        const Job& job = jobs_[i];
+        auto simulation = simulations.find(job.model->level);
+        if (simulation == simulations.end()) {
+          simulation = simulations.try_emplace(job.model->level, *job.model).first;
+        }
+        RunJob(job, &simulation->second);
+      }
+    } catch (...) {
+      stopped_ = true;
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+
+  void RunJob(const Job& job, Simulation* simulation) {
+    const EpisodeStart start = StartOf(task_, options_.seed, job.episode, options_.action_noise);
+    const std::unique_ptr<Policy> policy =
+        MakePolicy(task_, options_.policy, job.model->level, job.episode);
+    std::unique_ptr<Viewer> viewer;
+    if (hooks_.make_viewer) {
+      viewer = hooks_.make_viewer(*job.model, job.episode, policy->NeedsImages());
+    }
+    const EpisodeResult result =
+        RunEpisode(*job.model, start, simulation, policy.get(), viewer.get());
+    if (!options_.folder.empty()) WriteEpisode(options_.folder, result, options_.states);
+    const std::lock_guard lock(mutex_);
+    sweep_.episodes.push_back(Summarise(result));
+    ++finished_;
+    if (hooks_.report) {
+      hooks_.report(sweep_.episodes.back(), finished_,
+                    sweep_.skipped + static_cast<int>(jobs_.size()));
+    }
+  }
+
+  const Task& task_;
+  const SweepOptions& options_;
+  const SweepHooks& hooks_;
+  const std::vector<Job> jobs_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stopped_{false};
+  std::mutex mutex_;  // of what follows
+  int finished_;
+  Sweep& sweep_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+Sweep RunSweep(const Task& task, const SweepOptions& options, const SweepHooks& hooks) {
+  Sweep sweep;
+  std::vector<TaskModel> models;
+  for (const int level : options.levels) {
+    models.push_back(MakeTaskModel(task, level, &sweep.warnings));
+    if (hooks.prepare) hooks.prepare(models.back().model.get());
+  }
+  if (!options.folder.empty()) OpenSweepFolder(task, options);
+
+  std::vector<Job> jobs;
+  for (int i = options.shard - 1; i < options.episodes; i += options.shards) {
+    for (const TaskModel& model : models) {
+      const int episode = options.first + i;
+      std::optional<EpisodeSummary> finished;
+      if (!options.folder.empty()) finished = ReadEpisode(options.folder, model.level, episode);
+      if (finished) {
+        sweep.episodes.push_back(*finished);
+      } else {
+        jobs.push_back({episode, &model});
+      }
+    }
+  }
+  sweep.skipped = static_cast<int>(sweep.episodes.size());
+  Queue(task, options, hooks, std::move(jobs), sweep.skipped, &sweep).Run();
+  std::sort(sweep.episodes.begin(), sweep.episodes.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.episode, a.level) < std::pair(b.episode, b.level);
+  });
+  return sweep;
+}
+
+}  // namespace physpring

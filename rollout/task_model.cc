@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/task_model.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "rollout/mujoco_log.h"
+#include "twin/error.h"
+#include "twin/hierarchy.h"
+#include "twin/quote.h"
+
+namespace physpring {
+namespace {
+
+struct DeleteSpec {
+  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
+};
+using SpecPtr = std::unique_ptr<mjSpec, DeleteSpec>;
+
+SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings) {
+  std::array<char, 1024> message{};
+  mjSpec* spec = nullptr;
+  for (const std::string& warning : CatchMujoco(
+           [&] { spec = mj_parseXML(path.c_str(), nullptr, message.data(), message.size()); })) {
+    warnings->push_back(fmt::format("{}: {}", path, warning));
+  }
+  if (!spec) throw Error(path + ": " + OneLine(message.data()));
+  return SpecPtr(spec);
+}
+
+// The body that holds the nodes: the level's first one.
+std::string ObjectBody(mjSpec* level, const std::string& file) {
+  const mjsBody* world = mjs_findBody(level, "world");
+  mjsElement* first = world ? mjs_firstChild(world, mjOBJ_BODY, 0) : nullptr;
+  if (!first) throw Error(file + ": has no body, expected a level of a twin");
+  return mjs_getString(mjs_getName(first));
+}
+
+// Attaches `level` to the world of `scene`, in a new frame.
+void Attach(const Pose& pose, const std::string& file, mjSpec* level, mjSpec* scene) {
+  bool attached = false;
+  std::string problem;
+  CatchMujoco([&] {
+    mjsFrame* frame = mjs_addFrame(mjs_findBody(scene, "world"), nullptr);
+    const Eigen::Quaterniond& q = pose.orientation;
+    const double quaternion[] = {q.w(), q.x(), q.y(), q.z()};
+    mju_copy3(frame->pos, pose.position.data());
+    mju_copy4(frame->quat, quaternion);
+    attached = mjs_attach(frame->element, level->element, "", "") != nullptr;
+  });
+  if (!attached) {
+    throw Error(
+        fmt::format("{}: cannot be attached to the scene: {}", file, OneLine(mjs_getError(scene))));
+  }
+}
+
+ModelPtr Compile(const std::string& file, mjSpec* scene, std::vector<std::string>* warnings) {
+  mjModel* model = nullptr;
+  for (const std::string& warning : CatchMujoco([&] { model = mj_compile(scene, nullptr); })) {
+    warnings->push_back(fmt::format("{}: {}", file, warning));
+  }
+  if (model) return ModelPtr(model);
+  const std::string last = warnings->empty() ? "" : "; " + warnings->back();
+  throw Error(fmt::format("{}: {}{}", file, OneLine(mjs_getError(scene)), last));
+}
+
+int Find(const mjModel& model, mjtObj kind, const std::string& name, const std::string& where) {
+  const int id = mj_name2id(&model, kind, name.c_str());
+  if (id >= 0) return id;
+  throw Error(fmt::format("{}: the scene has no {} {}", where, mju_type2Str(kind), Quote(name)));
+}
+
+void FindNodes(const std::string& body, const std::string& file, TaskModel* made) {
+  const mjModel& model = *made->model;
+  const int parent = mj_name2id(&model, mjOBJ_BODY, body.c_str());
+  std::vector<int> nodes;
+  for (int child = parent + 1; child < model.nbody; ++child) {
+    if (model.body_parentid[child] == parent && model.body_jntnum[child] == 3) {
+      nodes.push_back(child);
+    }
+  }
+  const SpringMassSystem& system = LevelOf(made->task->twin, made->level).system;
+  if (static_cast<int>(nodes.size()) != system.node_count()) {
+    throw Error(fmt::format("{}: has {} nodes, but level {} of the twin has {}", file, nodes.size(),
+                            made->level, system.node_count()));
+  }
+  made->reference.resize(3, system.node_count());
+  for (int i = 0; i < system.node_count(); ++i) {
+    made->reference.col(i) = Eigen::Map<const Eigen::Vector3d>(model.body_pos + 3 * nodes[i]);
+    made->node_qpos.push_back(model.jnt_qposadr[model.body_jntadr[nodes[i]]]);
+  }
+  constexpr double kSame = 1e-9;  // m
+  const double apart =
+      (made->reference - system.position.leftCols(system.node_count())).cwiseAbs().maxCoeff();
+  if (apart > kSame) {
+    throw Error(
+        fmt::format("{}: its nodes are up to {:.2g} m from those of level {} of the twin; "
+                    "it was not exported from it",
+                    file, apart, made->level));
+  }
+  const double* q = model.body_quat + 4 * parent;
+  made->parent.position = Eigen::Map<const Eigen::Vector3d>(model.body_pos + 3 * parent);
+  made->parent.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+}
+
+void FindRobot(const std::string& where, TaskModel* made) {
+  const mjModel& model = *made->model;
+  const RobotOptions& robot = made->task->robot;
+  if (robot.kind == RobotKind::kCartesian) {
+    made->target = model.body_mocapid[Find(model, mjOBJ_BODY, robot.target, where)];
+    if (made->target < 0) {
+      throw Error(
+          fmt::format("{}: robot.target {} is not a mocap body", where, Quote(robot.target)));
+    }
+    made->hand = Find(model, mjOBJ_SITE, robot.hand, where);
+  }
+  for (const std::string& name : robot.actuators) {
+    const int actuator = Find(model, mjOBJ_ACTUATOR, name, where);
+    made->actuators.push_back(actuator);
+    if (robot.kind == RobotKind::kCartesian) continue;
+    if (model.actuator_trntype[actuator] != mjTRN_JOINT) {
+      throw Error(fmt::format("{}: actuator {} does not drive a joint", where, Quote(name)));
+    }
+    made->joint_qpos.push_back(model.jnt_qposadr[model.actuator_trnid[2 * actuator]]);
+  }
+}
+
+std::string Numbers(const Pose& pose) {
+  const Eigen::Vector3d& p = pose.position;
+  const Eigen::Quaterniond& q = pose.orientation;
+  return fmt::format("pos=\"{} {} {}\" quat=\"{} {} {} {}\"", p.x(), p.y(), p.z(), q.w(), q.x(),
+                     q.y(), q.z());
+}
+
+}  // namespace
+
+TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* warnings) {
+  if (level < 0 || level >= static_cast<int>(task.levels.size())) {
+    throw Error(
+        fmt::format("{}: has levels 0 to {}, not {}", task.folder, task.levels.size() - 1, level));
+  }
+  const std::string& file = task.levels[level];
+  const SpecPtr scene = ParseSpec(task.scene, warnings);
+  const SpecPtr object = ParseSpec(file, warnings);
+  const std::string body = ObjectBody(object.get(), file);
+  Attach(task.object, file, object.get(), scene.get());
+
+  TaskModel made;
+  made.task = &task;
+  made.level = level;
+  made.model = Compile(task.scene, scene.get(), warnings);
+  const double frame = 1 / task.rate;
+  made.steps = static_cast<int>(std::ceil(frame / made.model->opt.timestep - 1e-6));
+  made.model->opt.timestep = frame / made.steps;
+  FindNodes(body, file, &made);
+  const std::string where = task.folder + "/task.json";
+  FindRobot(where, &made);
+  if (!task.success.body.empty()) {
+    made.success_body = Find(*made.model, mjOBJ_BODY, task.success.body, where);
+  }
+  for (const std::string& camera : task.cameras) Find(*made.model, mjOBJ_CAMERA, camera, where);
+  made.success = MakeSuccessRule(task);
+  return made;
+}
+
+std::string FormatSceneFile(const Task& task, int level) {
+  const auto absolute = [](const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+  };
+  return fmt::format(
+      "<mujoco model=\"{0} level {1}\">\n"
+      "  <include file=\"{2}\"/>\n"
+      "  <asset>\n    <model name=\"object\" file=\"{3}\"/>\n  </asset>\n"
+      "  <worldbody>\n    <frame {4}>\n      <attach model=\"object\" prefix=\"\"/>\n"
+      "    </frame>\n  </worldbody>\n</mujoco>\n",
+      task.name, level, absolute(task.scene), absolute(task.levels.at(level)),
+      Numbers(task.object));
+}
+
+}  // namespace physpring

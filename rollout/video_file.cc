@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/video_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+// A name in the same folder with the same ending, which ffmpeg goes by.
+std::string Unfinished(const std::string& path) {
+  if (path.find('%') != std::string::npos) return path;  // many files
+  const std::filesystem::path whole = path;
+  return (whole.parent_path() / fmt::format("{}.{}.unfinished{}", whole.stem().string(), getpid(),
+                                            whole.extension().string()))
+      .string();
+}
+
+// Starts a program that reads `input`; 0 or an error number.
+int Start(std::vector<std::string> words, int input, pid_t* process) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+  const int failure =
+      posix_spawnp(process, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return failure;
+}
+
+}  // namespace
+
+VideoFile::VideoFile(std::string path, int width, int height, double rate)
+    : path_(std::move(path)), unfinished_(Unfinished(path_)) {
+  // a socket, because writing to one whose reader died is an error and no signal
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    throw Error(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+  }
+  pipe_ = ends[0];
+  const std::vector<std::string> command = {"ffmpeg",
+                                            "-loglevel",
+                                            "error",
+                                            "-nostdin",
+                                            "-y",
+                                            "-f",
+                                            "rawvideo",
+                                            "-pix_fmt",
+                                            "rgb24",
+                                            "-s",
+                                            fmt::format("{}x{}", width, height),
+                                            "-r",
+                                            fmt::format("{}", rate),
+                                            "-i",
+                                            "pipe:0",
+                                            "-threads",
+                                            "1",
+                                            "-pix_fmt",
+                                            path_.ends_with(".png") ? "rgb24" : "yuv420p",
+                                            unfinished_};
+  const int failure = Start(command, ends[1], &process_);
+  close(ends[1]);
+  if (failure == 0) return;
+  close(pipe_);
+  throw Error(failure == ENOENT
+                  ? path_ + ": videos need ffmpeg, which is not here: apt-get install ffmpeg"
+                  : fmt::format("{}: ffmpeg cannot be started: {}", path_, std::strerror(failure)));
+}
+
+VideoFile::~VideoFile() {
+  if (process_ < 0) return;
+  Stop();
+  unlink(unfinished_.c_str());
+}
+
+void VideoFile::Add(const Image& image) {
+  const unsigned char* bytes = image.rgb.data();
+  std::size_t left = image.rgb.size();
+  while (left > 0) {
+    const ssize_t sent = send(pipe_, bytes, left, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) throw Error(path_ + ": ffmpeg ended early");
+    bytes += sent;
+    left -= static_cast<std::size_t>(sent);
+  }
+}
+
+void VideoFile::Stop() {
+  close(pipe_);
+  while (waitpid(process_, &status_, 0) < 0 && errno == EINTR) {
+  }
+  process_ = -1;
+}
+
+void VideoFile::Finish() {
+  Stop();
+  const bool good = WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+  if (good && (unfinished_ == path_ || rename(unfinished_.c_str(), path_.c_str()) == 0)) return;
+  unlink(unfinished_.c_str());
+  throw Error(path_ + ": ffmpeg could not write it");
+}
+
+}  // namespace physpring

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A policy server as openpi's, with the msgpack code of the package openpi-client itself.
+
+openpi_server.py BEHAVIOUR LOG.npz   prints its port, then serves until it is killed
+
+BEHAVIOUR: good (chunks of 7 actions that push), silent (no answer), nan, shape (7 numbers), text (an
+error, as openpi tells it), dead (closes), garbage (no msgpack). The first request is kept in LOG.npz.
+"""
+import asyncio
+import sys
+
+import numpy as np
+import websockets
+import websockets.asyncio.server
+from openpi_client import msgpack_numpy
+
+CHUNK = 7
+
+
+def actions(state, behaviour):
+    """A chunk that moves the hand on by 8 mm a frame along y."""
+    chunk = np.tile(state.astype(np.float32), (CHUNK, 1))
+    chunk[:, 1] += 0.008 * np.arange(1, CHUNK + 1, dtype=np.float32)
+    if behaviour == 'nan':
+        chunk[3, 2] = np.nan
+    return chunk[:, :7] if behaviour == 'shape' else chunk
+
+
+class Server:
+    def __init__(self, behaviour, log):
+        self.behaviour, self.log, self.requests = behaviour, log, 0
+
+    async def serve(self, connection):
+        packer = msgpack_numpy.Packer()
+        await connection.send(packer.pack({'name': 'test', 'action_dim': np.int64(8)}))
+        async for message in connection:
+            request = msgpack_numpy.unpackb(message)
+            self.requests += 1
+            if self.requests == 1:
+                images = {'image_' + name: image for name, image in request['images'].items()}
+                np.savez(self.log, state=request['state'], prompt=np.array(request['prompt']),
+                         **images)
+            await self.answer(connection, request, packer)
+
+    async def answer(self, connection, request, packer):
+        if self.behaviour == 'silent':
+            await asyncio.sleep(1000)
+        elif self.behaviour == 'dead':
+            connection.transport.abort()
+        elif self.behaviour == 'text':
+            await connection.send('Traceback: the policy failed')
+        elif self.behaviour == 'garbage':
+            await connection.send(b'\xc1\xc1')
+        else:
+            chunk = actions(request['state'], self.behaviour)
+            await connection.send(packer.pack({'actions': chunk, 'server_timing': {'infer_ms': 1.0}}))
+
+
+async def main():
+    server = Server(*sys.argv[1:])
+    async with websockets.asyncio.server.serve(server.serve, '127.0.0.1', 0, compression=None,
+                                               max_size=None) as running:
+        print(running.sockets[0].getsockname()[1], flush=True)
+        await asyncio.Future()
+
+
+asyncio.run(main())
