@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
+#include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/rollout_report.h"
 #include "rollout/camera_thread.h"
@@ -69,6 +70,7 @@ CLI::Validator TakesPolicy() {
       "");
 }
 
+// Tables on standard output, and the report.
 void Report(const std::vector<JudgedPolicy>& policies, const std::string& json) {
   fmt::print("{}", FormatTables(policies));
   if (!json.empty()) WriteFileAtomically(json, FormatJson(policies));
@@ -105,7 +107,9 @@ void AddCameras(const Arguments& arguments, const Task& task, SweepHooks* hooks)
 
 void Run(const Arguments& arguments) {
   LoadPluginLibrary();
-  const Task task = ReadTask(FolderOf(arguments.task));
+  const std::string folder = FolderOf(arguments.task);
+  ExpectOutputs({arguments.json, arguments.save_scene, arguments.video}, {folder + "/task.json"});
+  const Task task = ReadTask(folder);
   if (!arguments.save_scene.empty()) {
     WriteFileAtomically(arguments.save_scene,
                         FormatSceneFile(task, arguments.sweep.levels.front()));
@@ -170,8 +174,14 @@ void AddSweepOptions(CLI::App* command, Arguments* arguments) {
       ->capture_default_str();
   AddSeed(command, &sweep.seed, "of starts and policies");
   command
-      ->add_option("--action-noise", sweep.action_noise,
+      ->add_option("--action-noise", sweep.disturbance.action,
                    "standard deviation of an error of the hand's place, constant in an episode")
+      ->check(NumberBetween(0, 1))
+      ->type_name("METRES")
+      ->capture_default_str();
+  command
+      ->add_option("--perturb", sweep.disturbance.start,
+                   "move the object's start by so much and change nothing else: for A/A controls")
       ->check(NumberBetween(0, 1))
       ->type_name("METRES")
       ->capture_default_str();
@@ -259,7 +269,10 @@ void AddMergeCommand(CLI::App& app) {
       ->required()
       ->type_name("DIR...");
   command->add_option("--json", arguments->json, "report to write")->type_name("FILE");
-  command->callback([arguments] { Report(ReadFolders(arguments->folders), arguments->json); });
+  command->callback([arguments] {
+    ExpectOutputs({arguments->json}, {});
+    Report(ReadFolders(arguments->folders), arguments->json);
+  });
 }
 
 }  // namespace physpring

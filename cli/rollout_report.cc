@@ -25,6 +25,15 @@ struct Comparison {
   PairedVerdicts verdicts;
 };
 
+// A policy against the first one, at one level: on the same starts if their seeds are the same.
+struct PolicyComparison {
+  std::size_t policy = 0;
+  int level = 0;
+  PairedVerdicts verdicts;
+};
+
+using Verdicts = std::map<int, std::map<int, bool>>;  // by level, then episode
+
 struct PolicyResult {
   std::map<int, LevelResult> levels;
   std::vector<Comparison> comparisons;  // with the lowest level
@@ -42,9 +51,28 @@ PairedVerdicts Pair(const std::map<int, bool>& first, const std::map<int, bool>&
   return verdicts;
 }
 
+Verdicts VerdictsOf(const JudgedPolicy& policy) {
+  Verdicts verdicts;
+  for (const EpisodeSummary& episode : policy.episodes) {
+    verdicts[episode.level][episode.episode] = episode.success;
+  }
+  return verdicts;
+}
+
+std::vector<PolicyComparison> ComparePolicies(const std::vector<JudgedPolicy>& policies) {
+  std::vector<PolicyComparison> comparisons;
+  for (std::size_t i = 1; i < policies.size(); ++i) {
+    const Verdicts first = VerdictsOf(policies[0]), other = VerdictsOf(policies[i]);
+    for (const auto& [level, verdicts] : first) {
+      if (!other.contains(level)) continue;
+      comparisons.push_back({i, level, Pair(verdicts, other.at(level))});
+    }
+  }
+  return comparisons;
+}
+
 PolicyResult Count(const JudgedPolicy& policy) {
   PolicyResult result;
-  std::map<int, std::map<int, bool>> success;  // by level, then episode
   for (const EpisodeSummary& episode : policy.episodes) {
     LevelResult& level = result.levels[episode.level];
     ++level.episodes;
@@ -56,8 +84,8 @@ PolicyResult Count(const JudgedPolicy& policy) {
     level.seconds.scoring += episode.seconds.scoring;
     level.seconds.rendering += episode.seconds.rendering;
     level.seconds.total += episode.seconds.total;
-    success[episode.level][episode.episode] = episode.success;
   }
+  const Verdicts success = VerdictsOf(policy);
   if (success.empty()) return result;
   const auto& [reference, verdicts] = *success.begin();
   for (const auto& [level, other] : success) {
@@ -85,15 +113,20 @@ std::string FormatLevels(const PolicyResult& result) {
   return text;
 }
 
-std::string FormatComparison(const Comparison& comparison) {
-  const PairedVerdicts& v = comparison.verdicts;
+// `first`, `second`: names of the two that were compared.
+std::string FormatVerdicts(const std::string& first, const std::string& second,
+                           const PairedVerdicts& v) {
   const std::optional<double> kappa = v.Kappa();
   return fmt::format(
-      "level {} and {}: {} episodes, both succeed {}, only level {} {}, only level {} {}, neither "
-      "{}; agreement {:.1f} %, kappa {}, McNemar p = {:.3g}\n",
-      comparison.reference, comparison.level, v.count(), v.both, comparison.reference, v.only_first,
-      comparison.level, v.only_second, v.neither, 100 * v.Agreement(),
-      kappa ? fmt::format("{:.2f}", *kappa) : "-", v.McNemar());
+      "{} and {}: {} episodes, both succeed {}, only {} {}, only {} {}, neither {}; agreement "
+      "{:.1f} %, kappa {}, McNemar p = {:.3g}\n",
+      first, second, v.count(), v.both, first, v.only_first, second, v.only_second, v.neither,
+      100 * v.Agreement(), kappa ? fmt::format("{:.2f}", *kappa) : "-", v.McNemar());
+}
+
+std::string FormatComparison(const Comparison& comparison) {
+  return FormatVerdicts(fmt::format("level {}", comparison.reference),
+                        fmt::format("level {}", comparison.level), comparison.verdicts);
 }
 
 // Success rates of the policies at two levels.
@@ -142,18 +175,22 @@ Json ToJson(int number, const LevelResult& level) {
           {"frames_per_second", s.total > 0 ? Json(level.frames / s.total) : Json()}};
 }
 
+// `first`, `second`: what the two that were compared are called in keys.
+void AddVerdicts(const char* first, const char* second, const PairedVerdicts& v, Json* json) {
+  json->update({{"episodes", v.count()},
+                {"both", v.both},
+                {std::string("only_") + first, v.only_first},
+                {std::string("only_") + second, v.only_second},
+                {"neither", v.neither},
+                {"agreement", v.Agreement()},
+                {"kappa", OrNull(v.Kappa())},
+                {"mcnemar_p", v.McNemar()}});
+}
+
 Json ToJson(const Comparison& comparison) {
-  const PairedVerdicts& v = comparison.verdicts;
-  return {{"reference", comparison.reference},
-          {"level", comparison.level},
-          {"episodes", v.count()},
-          {"both", v.both},
-          {"only_reference", v.only_first},
-          {"only_level", v.only_second},
-          {"neither", v.neither},
-          {"agreement", v.Agreement()},
-          {"kappa", OrNull(v.Kappa())},
-          {"mcnemar_p", v.McNemar()}};
+  Json json = {{"reference", comparison.reference}, {"level", comparison.level}};
+  AddVerdicts("reference", "level", comparison.verdicts, &json);
+  return json;
 }
 
 Json ToJson(const JudgedPolicy& policy, const PolicyResult& result) {
@@ -193,6 +230,11 @@ std::string FormatTables(const std::vector<JudgedPolicy>& policies) {
       text += FormatComparison(comparison);
     }
   }
+  for (const PolicyComparison& comparison : ComparePolicies(policies)) {
+    text += fmt::format("level {}: ", comparison.level) +
+            FormatVerdicts("policy 1", fmt::format("policy {}", comparison.policy + 1),
+                           comparison.verdicts);
+  }
   for (const Ranking& ranking : Rank(results)) {
     const std::optional<double> pearson = Pearson(ranking.reference_rates, ranking.rates);
     text += fmt::format("level {} ranks {} policies against level {}: MMRV {:.3f}, Pearson {}\n",
@@ -205,9 +247,16 @@ std::string FormatTables(const std::vector<JudgedPolicy>& policies) {
 
 std::string FormatJson(const std::vector<JudgedPolicy>& policies) {
   const std::vector<PolicyResult> results = CountAll(policies);
-  Json json = {{"policies", Json::array()}, {"rankings", Json::array()}};
+  Json json = {{"policies", Json::array()},
+               {"policy_comparisons", Json::array()},
+               {"rankings", Json::array()}};
   for (std::size_t i = 0; i < policies.size(); ++i) {
     json["policies"].push_back(ToJson(policies[i], results[i]));
+  }
+  for (const PolicyComparison& comparison : ComparePolicies(policies)) {
+    Json entry = {{"policy", comparison.policy}, {"level", comparison.level}};
+    AddVerdicts("first", "policy", comparison.verdicts, &entry);
+    json["policy_comparisons"].push_back(entry);
   }
   for (const Ranking& ranking : Rank(results)) {
     json["rankings"].push_back(

@@ -22,6 +22,19 @@ struct Pose {
 // First `inner`, then `outer`.
 Pose operator*(const Pose& outer, const Pose& inner);
 
+// What follows is written out operation by operation, as python/examples/task_env.py has it: a
+// simulation with contacts is only the same elsewhere if its input is, to the last bit.
+
+// The unit quaternion along w, x, y, z.
+Eigen::Quaterniond UnitQuaternion(double w, double x, double y, double z);
+
+// The angle [rad] that turns one orientation into the other.
+double AngleBetween(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second);
+
+// Along the shortest turn from the first orientation (share 0) to the second (1).
+Eigen::Quaterniond Slerp(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second,
+                         double share);
+
 // A turn about the vertical axis z, by `angle` [rad].
 Eigen::Quaterniond Yaw(double angle);
 

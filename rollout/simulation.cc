@@ -7,16 +7,23 @@
 namespace physpring {
 namespace {
 
-Pose MocapPose(const mjModel& model, const mjData& data, int mocap) {
-  static_cast<void>(model);
+Pose MocapPose(const mjData& data, int mocap) {
   const double* q = data.mocap_quat + 4 * mocap;
   return {Eigen::Map<const Eigen::Vector3d>(data.mocap_pos + 3 * mocap),
-          Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized()};
+          UnitQuaternion(q[0], q[1], q[2], q[3])};
+}
+
+// The point `x` turned by an orientation.
+Eigen::Vector3d Turn(const Eigen::Quaterniond& orientation, const Eigen::Vector3d& x) {
+  const double quaternion[] = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
+  Eigen::Vector3d turned;
+  mju_rotVecQuat(turned.data(), x.data(), quaternion);
+  return turned;
 }
 
 Pose Between(const Pose& from, const Pose& to, double share) {
   return {from.position + share * (to.position - from.position),
-          from.orientation.slerp(share, to.orientation)};
+          Slerp(from.orientation, to.orientation, share)};
 }
 
 }  // namespace
@@ -31,9 +38,12 @@ void Simulation::Reset(const EpisodeStart& start) {
 
   // each node to its place at the start, by its slide joints
   const Pose& object = start.object;
-  const Points nodes = model_.parent.ToLocal(object.ToWorld(model_.reference)) - model_.reference;
+  const Eigen::Quaterniond back = model_.parent.orientation.conjugate();
   for (int i = 0; i < model_.node_count(); ++i) {
-    Eigen::Map<Eigen::Vector3d>(data_->qpos + model_.node_qpos[i]) = nodes.col(i);
+    const Eigen::Vector3d reference = model_.reference.col(i);
+    const Eigen::Vector3d place = Turn(object.orientation, reference) + object.position;
+    const Eigen::Vector3d local = Turn(back, place - model_.parent.position);
+    Eigen::Map<Eigen::Vector3d>(data_->qpos + model_.node_qpos[i]) = local - reference;
   }
   const SpringMassSystem& dense = task.twin.levels[0].system;
   lift_.emplace(task.twin, model_.level,
@@ -41,7 +51,7 @@ void Simulation::Reset(const EpisodeStart& start) {
 
   Eigen::VectorXd home = task.robot.home;
   if (task.robot.kind == RobotKind::kCartesian) {
-    command_ = {MocapPose(model, *data_, model_.target), 0};
+    command_ = {MocapPose(*data_, model_.target), 0};
     Place(command_);
     if (home.size() == 0) home = CartesianAction(command_.target, 0);
   } else if (home.size() == 0) {
@@ -59,10 +69,11 @@ Simulation::Command Simulation::Limit(const Command& wish) const {
   };
   Command command;
   const Eigen::Vector3d way = wish.target.position - command_.target.position;
-  command.target.position = command_.target.position + share(way.norm(), robot.speed) * way;
-  const double turn = command_.target.orientation.angularDistance(wish.target.orientation);
+  command.target.position =
+      command_.target.position + share(mju_norm3(way.data()), robot.speed) * way;
+  const double turn = AngleBetween(command_.target.orientation, wish.target.orientation);
   command.target.orientation =
-      command_.target.orientation.slerp(share(turn, robot.turn_speed), wish.target.orientation);
+      Slerp(command_.target.orientation, wish.target.orientation, share(turn, robot.turn_speed));
   const double grip = std::clamp(wish.gripper, 0.0, 1.0) - command_.gripper;
   command.gripper = command_.gripper + share(std::abs(grip), robot.gripper_speed) * grip;
   return command;
@@ -90,8 +101,7 @@ void Simulation::RunFrame(const Eigen::VectorXd& action) {
     for (int step = 0; step < model_.steps; ++step) Step(model, data_.get());
   } else {
     const Command from = command_;
-    const Pose wish{action.head<3>(),
-                    Eigen::Quaterniond(action[3], action[4], action[5], action[6]).normalized()};
+    const Pose wish{action.head<3>(), UnitQuaternion(action[3], action[4], action[5], action[6])};
     const Command to = Limit({wish, action[7]});
     for (int step = 1; step <= model_.steps; ++step) {
       const double share = static_cast<double>(step) / model_.steps;

@@ -20,7 +20,8 @@ double Normal(std::mt19937_64* random) {  // Box and Muller
 
 }  // namespace
 
-EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode, double action_noise) {
+EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode,
+                     const Disturbance& disturbance) {
   const auto word = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits); };
   std::seed_seq mix{word(seed), word(seed >> 32), word(static_cast<std::uint64_t>(episode))};
   std::mt19937_64 random(mix);
@@ -38,9 +39,13 @@ EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode, double a
   start.episode = episode;
   start.object.position = task.object.position + Eigen::Vector3d(x, y, 0);
   start.object.orientation = (Yaw(yaw) * task.object.orientation).normalized();
-  const Eigen::Vector3d normal(Normal(&random), Normal(&random), Normal(&random));
-  if (action_noise > 0) start.action_offset = action_noise * normal;
+  Eigen::Vector3d normal;
+  for (double& coordinate : normal) coordinate = Normal(&random);
+  if (disturbance.action > 0) start.action_offset = disturbance.action * normal;
   start.seed = random();
+  const double direction = 2 * std::numbers::pi * Uniform(&random);
+  start.object.position +=
+      disturbance.start * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0);
   return start;
 }
 

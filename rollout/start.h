@@ -16,9 +16,17 @@ struct EpisodeStart {
   Eigen::Vector3d action_offset = Eigen::Vector3d::Zero();  // m, added to Cartesian actions
 };
 
-// Depends on task, seed and number only: the same for every level. `action_noise` [m]: standard
-// deviation of each coordinate of the action's offset, as a camera that is calibrated badly gives.
-EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode, double action_noise);
+// What makes episodes harder, or a little different.
+struct Disturbance {
+  double action = 0;  // m, standard deviation of each coordinate of the actions' offset: an error
+                      // of the hand's place, as a camera that is calibrated badly gives
+  double start = 0;  // m, by which the object lies elsewhere, in a random direction
+};
+
+// Depends on the arguments only: the same for every level. The start's disturbance changes nothing
+// else, so that its effect alone can be measured (an A/A control).
+EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode,
+                     const Disturbance& disturbance);
 
 }  // namespace physpring
 

@@ -65,7 +65,7 @@ class Queue {
   }
 
   void RunJob(const Job& job, Simulation* simulation) {
-    const EpisodeStart start = StartOf(task_, options_.seed, job.episode, options_.action_noise);
+    const EpisodeStart start = StartOf(task_, options_.seed, job.episode, options_.disturbance);
     const std::unique_ptr<Policy> policy =
         MakePolicy(task_, options_.policy, job.model->level, job.episode);
     std::unique_ptr<Viewer> viewer;
@@ -101,11 +101,13 @@ class Queue {
 Sweep RunSweep(const Task& task, const SweepOptions& options, const SweepHooks& hooks) {
   Sweep sweep;
   std::vector<TaskModel> models;
+  std::map<int, std::string> hashes;
   for (const int level : options.levels) {
     models.push_back(MakeTaskModel(task, level, &sweep.warnings));
+    hashes[level] = HashModel(*models.back().model);
     if (hooks.prepare) hooks.prepare(models.back().model.get());
   }
-  if (!options.folder.empty()) OpenSweepFolder(task, options);
+  if (!options.folder.empty()) OpenSweepFolder(task, options, hashes);
 
   std::vector<Job> jobs;
   for (int i = options.shard - 1; i < options.episodes; i += options.shards) {

@@ -20,7 +20,7 @@ struct SweepOptions {
   int first = 0, episodes = 1;  // numbers first ... first + episodes - 1
   int shard = 1, shards = 1;    // of the episodes, this shard runs number shard - 1, + shards, ...
   std::uint64_t seed = 0;
-  double action_noise = 0;  // m, see StartOf
+  Disturbance disturbance;
   PolicyChoice policy;
   int threads = 1;
   std::string folder;  // where episodes are kept and finished ones are found; empty: nowhere

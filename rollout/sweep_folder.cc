@@ -19,17 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of all that a task is made of. Levels count one by one, so that more may be added later.
-std::string HashTask(const Task& task) {
-  return HashBytes(ReadFile(task.folder + "/task.json") + ReadFile(task.scene));
-}
-
 std::string FormatIdentity(const Task& task, const SweepOptions& options) {
   const nlohmann::ordered_json json = {{"task", task.name},
-                                       {"task_hash", HashTask(task)},
+                                       {"task_hash", HashFile(task.folder + "/task.json")},
                                        {"policy", options.policy.text},
                                        {"seed", options.seed},
-                                       {"action_noise", options.action_noise}};
+                                       {"action_noise", options.disturbance.action},
+                                       {"perturb", options.disturbance.start}};
   return json.dump(1) + "\n";
 }
 
@@ -44,22 +40,35 @@ int NumberIn(std::string_view name, std::string_view before, std::string_view af
   return failure == std::errc() && rest == digits.end() ? number : -1;
 }
 
+// Writes what a file has to hold where there is none; otherwise, whether it holds that.
+bool IsNewOrHolds(const std::string& file, const std::string& text) {
+  if (fs::exists(file)) return ReadFile(file) == text;
+  WriteFileAtomically(file, text);
+  return true;
+}
+
 }  // namespace
 
-void OpenSweepFolder(const Task& task, const SweepOptions& options) {
+void OpenSweepFolder(const Task& task, const SweepOptions& options,
+                     const std::map<int, std::string>& hashes) {
   const std::string file = options.folder + "/sweep.json";
   const std::string identity = FormatIdentity(task, options);
   std::error_code failure;
-  for (const int level : options.levels) {
-    fs::create_directories(fmt::format("{}/level{}", options.folder, level), failure);
+  for (const auto& [level, hash] : hashes) {
+    const std::string folder = fmt::format("{}/level{}", options.folder, level);
+    fs::create_directories(folder, failure);
     if (failure) {
       throw Error(fmt::format("{}: cannot be made: {}", options.folder, failure.message()));
     }
+    if (IsNewOrHolds(folder + "/model.txt", hash + "\n")) continue;
+    throw Error(
+        fmt::format("{}: holds episodes of another version of the scene or of its object; "
+                    "use another folder",
+                    folder));
   }
-  if (!fs::exists(file)) return WriteFileAtomically(file, identity);
-  if (ReadFile(file) == identity) return;
+  if (IsNewOrHolds(file, identity)) return;
   const JsonFields now(identity, file), before(ReadFile(file), file);
-  for (const char* key : {"task", "task_hash", "policy", "seed", "action_noise"}) {
+  for (const char* key : {"task", "task_hash", "policy", "seed", "action_noise", "perturb"}) {
     const auto value = [key](const JsonFields& fields) {
       return nlohmann::json::parse(fields.Dump()).value(key, nlohmann::json()).dump();
     };

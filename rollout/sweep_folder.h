@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_ROLLOUT_SWEEP_FOLDER_H_
 #define PHYSPRING_ROLLOUT_SWEEP_FOLDER_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,10 @@
 
 namespace physpring {
 
-// Makes the folder, or checks that what it holds is of the same sweep: task (by the content of its
-// files), policy, seed and noise. Throws Error if not.
-void OpenSweepFolder(const Task& task, const SweepOptions& options);
+// Makes the folder, or checks that what it holds is of the same sweep: task, compiled models,
+// policy, seed and noise. `hashes`: of each level's model, as it was compiled. Throws Error if not.
+void OpenSweepFolder(const Task& task, const SweepOptions& options,
+                     const std::map<int, std::string>& hashes);
 
 // A sweep as its folders tell it.
 struct StoredSweep {

@@ -33,9 +33,11 @@ Pose ReadPose(const JsonFields& fields) {
   if (!fields.Has("quaternion")) return pose;
   const std::vector<double> q = fields.Numbers("quaternion");
   if (q.size() != 4) fields.Fail("quaternion", "must be four numbers, w x y z");
-  pose.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  if (!(pose.orientation.norm() > 1e-3)) fields.Fail("quaternion", "must not be zero");
-  pose.orientation.normalize();
+  constexpr double kLeast = 1e-3;
+  if (!(Eigen::Map<const Eigen::Vector4d>(q.data()).norm() > kLeast)) {
+    fields.Fail("quaternion", "must not be zero");
+  }
+  pose.orientation = UnitQuaternion(q[0], q[1], q[2], q[3]);
   return pose;
 }
 

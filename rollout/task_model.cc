@@ -10,6 +10,7 @@
 #include "rollout/mujoco_log.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
+#include "twin/npz.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -18,6 +19,8 @@ namespace {
 struct DeleteSpec {
   void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
 };
+constexpr const char* kPrefix = "object_";  // of the level's names in the scene
+
 using SpecPtr = std::unique_ptr<mjSpec, DeleteSpec>;
 
 SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings) {
@@ -31,12 +34,12 @@ SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings) {
   return SpecPtr(spec);
 }
 
-// The body that holds the nodes: the level's first one.
+// The body that holds the nodes, in the scene: the level's first one.
 std::string ObjectBody(mjSpec* level, const std::string& file) {
   const mjsBody* world = mjs_findBody(level, "world");
   mjsElement* first = world ? mjs_firstChild(world, mjOBJ_BODY, 0) : nullptr;
   if (!first) throw Error(file + ": has no body, expected a level of a twin");
-  return mjs_getString(mjs_getName(first));
+  return std::string(kPrefix) + mjs_getString(mjs_getName(first));
 }
 
 // Attaches `level` to the world of `scene`, in a new frame.
@@ -49,7 +52,7 @@ void Attach(const Pose& pose, const std::string& file, mjSpec* level, mjSpec* sc
     const double quaternion[] = {q.w(), q.x(), q.y(), q.z()};
     mju_copy3(frame->pos, pose.position.data());
     mju_copy4(frame->quat, quaternion);
-    attached = mjs_attach(frame->element, level->element, "", "") != nullptr;
+    attached = mjs_attach(frame->element, level->element, kPrefix, "") != nullptr;
   });
   if (!attached) {
     throw Error(
@@ -166,6 +169,13 @@ TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* w
   return made;
 }
 
+std::string HashModel(const mjModel& model) {
+  const mjtSize size = mj_sizeModel(&model);
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  mj_saveModel(&model, nullptr, bytes.data(), size);
+  return HashBytes(bytes);
+}
+
 std::string FormatSceneFile(const Task& task, int level) {
   const auto absolute = [](const std::string& path) {
     return std::filesystem::absolute(path).lexically_normal().string();
@@ -174,10 +184,10 @@ std::string FormatSceneFile(const Task& task, int level) {
       "<mujoco model=\"{0} level {1}\">\n"
       "  <include file=\"{2}\"/>\n"
       "  <asset>\n    <model name=\"object\" file=\"{3}\"/>\n  </asset>\n"
-      "  <worldbody>\n    <frame {4}>\n      <attach model=\"object\" prefix=\"\"/>\n"
+      "  <worldbody>\n    <frame {4}>\n      <attach model=\"object\" prefix=\"{5}\"/>\n"
       "    </frame>\n  </worldbody>\n</mujoco>\n",
-      task.name, level, absolute(task.scene), absolute(task.levels.at(level)),
-      Numbers(task.object));
+      task.name, level, absolute(task.scene), absolute(task.levels.at(level)), Numbers(task.object),
+      kPrefix);
 }
 
 }  // namespace physpring

@@ -41,6 +41,9 @@ struct TaskModel {
 // compile or is not there.
 TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* warnings);
 
+// A hash of all that the compiled model holds.
+std::string HashModel(const mjModel& model);
+
 // A small MJCF file that shows the same scene in any program: it includes the task's scene and
 // attaches the level.
 std::string FormatSceneFile(const Task& task, int level);

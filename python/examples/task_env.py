@@ -19,41 +19,47 @@ import mujoco
 import numpy as np
 
 
-def pose(fields):
-    """Position [m] and quaternion w x y z of {"position": ..., "quaternion": ...}."""
-    quaternion = np.array(fields.get('quaternion', [1, 0, 0, 0]), dtype=float)
-    return np.array(fields.get('position', [0, 0, 0]), dtype=float), unit(quaternion)
+# As in rollout/pose.cc, operation by operation: a simulation with contacts is only the same in C++ and
+# here if its input is, to the last bit.
+
+def unit(q):
+    """The unit quaternion along q."""
+    norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    return np.array([q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm])
 
 
-def unit(quaternion):
-    return quaternion / np.linalg.norm(quaternion)
+def cosine_between(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 
 
-def rotation(quaternion):
-    """3 x 3 matrix of a unit quaternion."""
-    matrix = np.empty(9)
-    mujoco.mju_quat2Mat(matrix, quaternion)
-    return matrix.reshape(3, 3)
-
-
-def angle_between(first, second):
+def angle_between(a, b):
     """The angle [rad] that turns one orientation into the other."""
-    turn, back = np.empty(4), np.empty(4)
-    mujoco.mju_negQuat(back, second)
-    mujoco.mju_mulQuat(turn, first, back)
-    return 2 * math.atan2(np.linalg.norm(turn[1:]), abs(turn[0]))
+    return 2 * math.acos(min(1.0, abs(cosine_between(a, b))))
 
 
-def slerp(first, second, share):
+def slerp(a, b, share):
     """Along the shortest turn from the first orientation (share 0) to the second (1)."""
-    cosine = float(first @ second)
-    if abs(cosine) >= 1 - np.finfo(float).eps:
-        weights = 1 - share, share
-    else:
+    cosine = cosine_between(a, b)
+    first, second = 1 - share, share
+    if abs(cosine) < 1 - 1e-15:
         angle = math.acos(abs(cosine))
-        weights = (math.sin((1 - share) * angle) / math.sin(angle),
-                   math.sin(share * angle) / math.sin(angle))
-    return weights[0] * first + math.copysign(weights[1], cosine) * second
+        first = math.sin((1 - share) * angle) / math.sin(angle)
+        second = math.sin(share * angle) / math.sin(angle)
+    if cosine < 0:
+        second = -second
+    return first * a + second * b
+
+
+def turn(quaternion, vector):
+    turned = np.empty(3)
+    mujoco.mju_rotVecQuat(turned, vector, quaternion)
+    return turned
+
+
+def pose(fields):
+    """Position [m] and unit quaternion w x y z of {"position": ..., "quaternion": ...}."""
+    return (np.array(fields.get('position', [0, 0, 0]), dtype=float),
+            unit(fields.get('quaternion', [1, 0, 0, 0])))
 
 
 class TaskEnv:
@@ -76,9 +82,9 @@ class TaskEnv:
         # the level goes into the scene, in a frame at the object's place
         scene = mujoco.MjSpec.from_file(str(folder / self.task.get('scene', 'scene.xml')))
         level_spec = mujoco.MjSpec.from_file(str(folder / self.task['levels'][level]))
-        body = level_spec.worldbody.first_body().name
+        body = 'object_' + level_spec.worldbody.first_body().name
         self.object = pose(self.task.get('object', {}))
-        scene.attach(level_spec, prefix='',
+        scene.attach(level_spec, prefix='object_',
                      frame=scene.worldbody.add_frame(pos=self.object[0], quat=self.object[1]))
         self.model = scene.compile()
         self.steps = math.ceil(1 / self.rate / self.model.opt.timestep - 1e-6)
@@ -104,11 +110,15 @@ class TaskEnv:
         """options["start"]: where the object starts, as in an episode's JSON; else a random cell of
         the task's grid."""
         start = (options or {}).get('start')
-        place = pose(start) if start else self._random_start(np.random.default_rng(seed))
+        if start:
+            position, orientation = np.array(start['position']), np.array(start['quaternion'])
+        else:
+            position, orientation = self._random_start(np.random.default_rng(seed))
         mujoco.mj_resetData(self.model, self.data)
-        world = self.reference @ rotation(place[1]).T + place[0]
-        local = (world - self.parent[0]) @ rotation(self.parent[1])
-        self.data.qpos[self.node_qpos] = local - self.reference
+        back = self.parent[1] * [1, -1, -1, -1]
+        for reference, qpos in zip(self.reference, self.node_qpos):
+            place = turn(orientation, reference) + position
+            self.data.qpos[qpos] = turn(back, place - self.parent[0]) - reference
         self.frame = 0
         self.target = (self.data.mocap_pos[self.mocap].copy(),
                        unit(self.data.mocap_quat[self.mocap]), 0.0)
@@ -132,8 +142,8 @@ class TaskEnv:
         noise = starts.get('noise_yaw', 0)
         yaw = math.radians(random.choice(starts.get('yaw', [0])) + random.uniform(-noise, noise))
         orientation = np.empty(4)
-        turn = np.array([math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)])
-        mujoco.mju_mulQuat(orientation, turn, self.object[1])
+        yaw = np.array([math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)])
+        mujoco.mju_mulQuat(orientation, yaw, self.object[1])
         return self.object[0] + shift, orientation
 
     def _limit(self, position, quaternion, gripper):
@@ -145,11 +155,11 @@ class TaskEnv:
 
         at, orientation, grip = self.target
         way = position - at
-        turn = angle_between(orientation, quaternion)
+        angle = angle_between(orientation, quaternion)
         closing = min(max(gripper, 0.0), 1.0) - grip
         turn_speed = math.radians(self.robot.get('turn_speed', 180))
-        return (at + share(np.linalg.norm(way), self.robot.get('speed', 0.5)) * way,
-                slerp(orientation, quaternion, share(turn, turn_speed)),
+        return (at + share(mujoco.mju_norm3(way), self.robot.get('speed', 0.5)) * way,
+                slerp(orientation, quaternion, share(angle, turn_speed)),
                 grip + share(abs(closing), self.robot.get('gripper_speed', 2)) * closing)
 
     def _place(self, position, quaternion, gripper):
@@ -170,7 +180,7 @@ class TaskEnv:
 
     def _observe(self):
         local = self.reference + self.data.qpos[self.node_qpos]
-        nodes = local @ rotation(self.parent[1]).T + self.parent[0]
+        nodes = np.array([turn(self.parent[1], node) for node in local]) + self.parent[0]
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, self.data.site_xmat[self.hand])
         robot = np.hstack([self.data.site_xpos[self.hand], quaternion, self.target[2]])

@@ -65,7 +65,7 @@ class SweepTest : public testing::Test {
     std::vector<std::string> warnings;
     const TaskModel model = MakeTaskModel(task, 0, &warnings);
     Simulation simulation(model);
-    return RunEpisode(model, StartOf(task, 0, 0, 0), &simulation, policy, nullptr);
+    return RunEpisode(model, StartOf(task, 0, 0, {}), &simulation, policy, nullptr);
   }
 
   SmallTask task_;
@@ -86,13 +86,13 @@ TEST_F(SweepTest, PushingSucceedsAtEveryLevelAndWaitingAtNone) {
 TEST_F(SweepTest, SameSeedGivesTheSameBytesForAnyNumberOfThreads) {
   SweepOptions options = Options("random");
   options.levels = {0, 2};
-  options.action_noise = 0.005;
+  options.disturbance.action = 0.005;
   options.folder = Folder("one");
   Run(options);
   options.folder = Folder("three");
   options.threads = 3;
   Run(options);
-  ASSERT_EQ(Bytes("one").size(), 1 + 2 * 8);
+  ASSERT_EQ(Bytes("one").size(), 1 + 2 * (1 + 8));  // verdict and states of 4 episodes each
   EXPECT_EQ(Bytes("one"), Bytes("three"));
 }
 
@@ -111,16 +111,23 @@ TEST_F(SweepTest, ReplayOfEpisodesGivesTheSameBytes) {
 
 TEST_F(SweepTest, AnotherSeedStartsElsewhere) {
   const Task task = ReadTask(task_.path());
-  const EpisodeStart one = StartOf(task, 1, 0, 0), two = StartOf(task, 2, 0, 0);
+  const EpisodeStart one = StartOf(task, 1, 0, {}), two = StartOf(task, 2, 0, {});
   EXPECT_GT((one.object.position - two.object.position).norm(), 1e-5);
   EXPECT_NE(one.seed, two.seed);
+}
+
+TEST_F(SweepTest, PerturbedStartDiffersByThatAlone) {
+  const Task task = ReadTask(task_.path());
+  const EpisodeStart plain = StartOf(task, 1, 3, {}), moved = StartOf(task, 1, 3, {0, 1e-6});
+  EXPECT_NEAR((plain.object.position - moved.object.position).norm(), 1e-6, 1e-15);
+  EXPECT_EQ(plain.seed, moved.seed);
 }
 
 TEST_F(SweepTest, StartsWalkThroughTheGrid) {
   const Task task = ReadTask(task_.path());
   std::vector<double> x, yaw;
   for (int episode = 0; episode < 4; ++episode) {
-    const Pose object = StartOf(task, 0, episode, 0).object;
+    const Pose object = StartOf(task, 0, episode, {}).object;
     x.push_back(object.position.x());
     yaw.push_back(2 * std::atan2(object.orientation.z(), object.orientation.w()));
   }
