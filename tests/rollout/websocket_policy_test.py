@@ -48,8 +48,8 @@ class WebsocketPolicyTest(unittest.TestCase):
         """The report, and seconds."""
         report = self.folder / 'report.json'
         start = time.monotonic()
-        subprocess.run([PHYSPRING, 'rollout', self.task, '--policy', address, '-o',
-                        self.folder / 'out', '--json', report, *options],
+        subprocess.run([PHYSPRING, 'rollout', self.task, '--policy', address, '--json', report,
+                        *options],
                        check=True, stdout=subprocess.DEVNULL)
         seconds = time.monotonic() - start
         return json.loads(report.read_text())['policies'][0]['episodes'], seconds
@@ -62,7 +62,7 @@ class WebsocketPolicyTest(unittest.TestCase):
 
     def test_state_prompt_and_chunks_arrive_intact(self):
         with Server('good', self.log) as address:
-            episodes, _ = self.rollout(address)
+            episodes, _ = self.rollout(address, '-o', self.folder / 'out')
         self.assertEqual(episodes[0]['problem'], '')
         kept = self.folder / 'out/level0/episode_00000.npz'
         robot, actions = self.read(kept, 'robot'), self.read(kept, 'actions')
