@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "rollout/policies/cloth_folding.h"
+#include "rollout/policies/rope_routing.h"
+#include "rollout/policies/toy_packing.h"
 #include "twin/error.h"
 #include "twin/quote.h"
 
@@ -18,7 +21,11 @@ namespace {
 using Make = std::function<std::unique_ptr<Policy>(const Task&)>;
 
 const std::map<std::string, Make>& Policies() {
-  static const std::map<std::string, Make> policies = {};
+  static const std::map<std::string, Make> policies = {
+      {"cloth_folding", [](const Task& task) { return std::make_unique<ClothFolding>(task); }},
+      {"rope_routing", [](const Task& task) { return std::make_unique<RopeRouting>(task); }},
+      {"toy_packing", [](const Task& task) { return std::make_unique<ToyPacking>(task); }},
+  };
   return policies;
 }
 

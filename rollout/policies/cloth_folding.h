@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cloth folding: pinches the cloth beside one corner, lifts it and lays the corner onto another
+// one. The corners are the first pair of the task's success rule.
+#ifndef PHYSPRING_ROLLOUT_POLICIES_CLOTH_FOLDING_H_
+#define PHYSPRING_ROLLOUT_POLICIES_CLOTH_FOLDING_H_
+
+#include "rollout/policies/waypoints.h"
+
+namespace physpring {
+
+class ClothFolding : public WaypointPolicy {
+ public:
+  explicit ClothFolding(const Task& task);
+
+ protected:
+  std::vector<Waypoint> Plan(int leg, const Observation& observation) override;
+
+ private:
+  int taken_, target_;                                        // particles
+  Eigen::Vector3d towards_target_ = Eigen::Vector3d::Zero();  // horizontal, |.| = 1
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_ROLLOUT_POLICIES_CLOTH_FOLDING_H_
