@@ -15,6 +15,9 @@
 namespace physpring {
 namespace {
 
+// Where a task says nothing: enough that another seed is another episode.
+constexpr double kNoise = 0.002, kNoiseYaw = 1;  // m, degrees
+
 std::string InFolder(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).string();
 }
@@ -77,8 +80,8 @@ std::vector<double> GridOr(const JsonFields& fields, const std::string& key) {
   return numbers;
 }
 
-double NoiseOr(const JsonFields& fields, const std::string& key) {
-  if (!fields.Has(key)) return 0;
+double NoiseOr(const JsonFields& fields, const std::string& key, double missing) {
+  if (!fields.Has(key)) return missing;
   const double noise = FiniteNumber(fields, key);
   if (noise < 0) fields.Fail(key, "must be 0 or more");
   return noise;
@@ -91,8 +94,8 @@ StartOptions ReadStarts(const JsonFields& fields) {
   starts.y = GridOr(fields, "y");
   starts.yaw = GridOr(fields, "yaw");
   for (double& yaw : starts.yaw) yaw = Radians(yaw);
-  starts.noise_xy = NoiseOr(fields, "noise_xy");
-  starts.noise_yaw = Radians(NoiseOr(fields, "noise_yaw"));
+  starts.noise_xy = NoiseOr(fields, "noise_xy", kNoise);
+  starts.noise_yaw = Radians(NoiseOr(fields, "noise_yaw", kNoiseYaw));
   return starts;
 }
 

@@ -40,7 +40,7 @@ struct RobotOptions {
 // noise, uniform between -noise and noise.
 struct StartOptions {
   std::vector<double> x{0}, y{0}, yaw{0};  // m, m, rad
-  double noise_xy = 0, noise_yaw = 0;      // m, rad
+  double noise_xy = 0, noise_yaw = 0;      // m, rad; ReadTask: 2 mm, 1 degree unless given
 
   int cells() const;  // of the grid
 };

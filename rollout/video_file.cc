@@ -51,26 +51,24 @@ VideoFile::VideoFile(std::string path, int width, int height, double rate)
     throw Error(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
   }
   pipe_ = ends[0];
-  const std::vector<std::string> command = {"ffmpeg",
-                                            "-loglevel",
-                                            "error",
-                                            "-nostdin",
-                                            "-y",
-                                            "-f",
-                                            "rawvideo",
-                                            "-pix_fmt",
-                                            "rgb24",
-                                            "-s",
-                                            fmt::format("{}x{}", width, height),
-                                            "-r",
-                                            fmt::format("{}", rate),
-                                            "-i",
-                                            "pipe:0",
-                                            "-threads",
-                                            "1",
-                                            "-pix_fmt",
-                                            path_.ends_with(".png") ? "rgb24" : "yuv420p",
-                                            unfinished_};
+  const bool pictures = path_.ends_with(".png");
+  std::vector<std::string> command = {"ffmpeg",
+                                      "-loglevel",
+                                      "error",
+                                      "-nostdin",
+                                      "-y",
+                                      "-f",
+                                      "rawvideo",
+                                      "-pix_fmt",
+                                      "rgb24",
+                                      "-s",
+                                      fmt::format("{}x{}", width, height)};
+  const auto add = [&](std::initializer_list<std::string> words) {
+    command.insert(command.end(), words);
+  };
+  add({"-r", fmt::format("{}", rate), "-i", "pipe:0", "-threads", "1"});
+  if (path_.ends_with(".mp4")) add({"-preset", "veryfast"});  // encoding must not outlast drawing
+  add({"-pix_fmt", pictures ? "rgb24" : "yuv420p", unfinished_});
   const int failure = Start(command, ends[1], &process_);
   close(ends[1]);
   if (failure == 0) return;

@@ -137,9 +137,9 @@ class TaskEnv:
     def _random_start(self, random):
         starts = self.task.get('starts', {})
         shift = [random.choice(starts.get(axis, [0])) for axis in ('x', 'y')]
-        noise = starts.get('noise_xy', 0)
+        noise = starts.get('noise_xy', 0.002)
         shift = np.array([*(shift + random.uniform(-noise, noise, 2)), 0])
-        noise = starts.get('noise_yaw', 0)
+        noise = starts.get('noise_yaw', 1)
         yaw = math.radians(random.choice(starts.get('yaw', [0])) + random.uniform(-noise, noise))
         orientation = np.empty(4)
         yaw = np.array([math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)])
