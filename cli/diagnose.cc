@@ -3,10 +3,12 @@
 // has it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/commands.h"
@@ -96,6 +98,7 @@ void AddDiagnoseCommand(CLI::App& app) {
   command->add_option("--json", arguments->json, "write report.json here, too")
       ->type_name("FILE.json");
   AddSeed(command, &arguments->options.seed, "of the bootstrap");
+  arguments->options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");
   command->callback([arguments] { Run(*arguments); });
 }

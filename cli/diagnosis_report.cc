@@ -22,8 +22,36 @@ Json Pair(const TrackPair& track) {
   return {{"fit", Number(track.fit)}, {"heldout", Number(track.held)}};
 }
 
-Json EffectList(const std::vector<EffectValues>& effects) {
-  return Json::parse(EffectsToJson(effects));
+// Names and parameters, and how well each parameter is known: a number or, where it has several
+// values, a list, as in the parameters themselves.
+Json EffectList(const Diagnosis& diagnosis) {
+  Json list = Json::parse(EffectsToJson(diagnosis.effects));
+  std::size_t i = 0;
+  for (std::size_t n = 0; n < diagnosis.effects.size(); ++n) {
+    Json errors = Json::object(), shared = Json::object();
+    for (const EffectParameter& parameter : GetEffect(diagnosis.effects[n].name).parameters()) {
+      Json of_error = Json::array(), of_shared = Json::array();
+      for (int k = 0; k < parameter.count && i < diagnosis.certainty.size(); ++k, ++i) {
+        of_error.push_back(Number(diagnosis.certainty[i].error));
+        of_shared.push_back(Number(diagnosis.certainty[i].shared));
+      }
+      errors[parameter.key] = parameter.count == 1 && !of_error.empty() ? of_error[0] : of_error;
+      shared[parameter.key] = parameter.count == 1 && !of_shared.empty() ? of_shared[0] : of_shared;
+    }
+    list[n]["standard_errors"] = errors;
+    list[n]["shared"] = shared;
+  }
+  return list;
+}
+
+// The effects that the held-out frames cannot tell from the first one accepted.
+Json Confounded(const Diagnosis& diagnosis) {
+  Json names = Json::array();
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
+    if (diagnosis.effects.empty() || candidate.name == diagnosis.effects[0].name) continue;
+    if (candidate.alike) names.push_back(candidate.name);
+  }
+  return names;
 }
 
 Json Direction(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
@@ -48,13 +76,33 @@ std::string Interval(const BootstrapResult& gain) {
                      1e3 * gain.low, 1e3 * gain.high);
 }
 
-// "mass_kg 0.052, place_x_m 0.1, ..."
-std::string DescribeParameters(const EffectValues& effect) {
+// "mass_kg 0.052 +- 0.001, place_x_m 0.1 +- 0.003, ..." of the effect of that index.
+std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect) {
+  std::size_t first = 0;
+  for (std::size_t n = 0; n < effect; ++n) {
+    first += static_cast<std::size_t>(diagnosis.effects[n].values.size());
+  }
+  const EffectValues& values = diagnosis.effects[effect];
   std::string text;
   Eigen::Index i = 0;
-  for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
+  for (const EffectParameter& parameter : GetEffect(values.name).parameters()) {
     text += (text.empty() ? "" : ", ") + parameter.key;
-    for (int n = 0; n < parameter.count; ++n) text += fmt::format(" {:.3g}", effect.values[i++]);
+    for (int n = 0; n < parameter.count; ++n, ++i) {
+      text += fmt::format(" {:.3g}", values.values[i]);
+      const std::size_t at = first + static_cast<std::size_t>(i);
+      if (at >= diagnosis.certainty.size()) continue;
+      text += fmt::format(" ± {:.2g}", 1.96 * diagnosis.certainty[at].error);
+      if (diagnosis.certainty[at].shared > 0.95) text += " (hardly told from other parameters)";
+    }
+  }
+  return text;
+}
+
+// "; as good on these recordings: ..." or nothing.
+std::string DescribeConfounded(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const Json& name : Confounded(diagnosis)) {
+    text += (text.empty() ? "as good on these recordings: " : ", ") + name.get<std::string>();
   }
   return text;
 }
@@ -140,11 +188,12 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
   const Json report = {
       {"noise_floor", diagnosis.noise_floor},
       {"before", Pair(diagnosis.before)},
-      {"effects", EffectList(diagnosis.effects)},
+      {"effects", EffectList(diagnosis)},
       {"after", Pair(diagnosis.after)},
       {"gain",
        {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
       {"candidates", candidates},
+      {"confounded", Confounded(diagnosis)},
       {"unexplained", UnexplainedJson(diagnosis)}};
   return report.dump(1) + "\n";
 }
@@ -159,9 +208,12 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
                         candidate.name, 100 * candidate.score, Millimetres(candidate.refit->held),
                         Interval(candidate.gain), candidate.gain.p);
   }
-  for (const EffectValues& effect : diagnosis.effects) {
-    text += fmt::format("added: {} ({})\n", effect.name, DescribeParameters(effect));
+  for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
+    text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
+                        DescribeParameters(diagnosis, i));
   }
+  const std::string confounded = DescribeConfounded(diagnosis);
+  if (!confounded.empty()) text += confounded + "\n";
   text += fmt::format("after: fit {}, held out {}\n", Millimetres(diagnosis.after.fit),
                       Millimetres(diagnosis.after.held));
   return text + Verdict(diagnosis) + "\n";
@@ -184,10 +236,15 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& t
   page += "<h2>Effects added</h2><ul>";
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
     const EffectValues& effect = diagnosis.effects[i];
-    page += fmt::format("<li><b>{}</b>: {}; {}</li>", effect.name, DescribeParameters(effect),
+    page += fmt::format("<li><b>{}</b>: {}; {}</li>", effect.name, DescribeParameters(diagnosis, i),
                         InMuJoCo(effect, diagnosis.twin.levels[0].system));
   }
   page += diagnosis.effects.empty() ? "<li>none</li></ul>" : "</ul>";
+  if (!diagnosis.effects.empty()) {
+    const std::string confounded = DescribeConfounded(diagnosis);
+    page += fmt::format("<p>Behind ±: half a 95 % interval from the curvature of the misfit{}.</p>",
+                        confounded.empty() ? "" : "; " + confounded);
+  }
   page +=
       "<h2>Candidates</h2><table><tr><th>effect</th><th>part of the misfit, linearised</th>"
       "<th>held out, refitted</th><th>gain</th></tr>";

@@ -2,10 +2,19 @@
 #include "trainer/diagnosis/block_bootstrap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
 namespace physpring {
+
+std::vector<double> Difference(const std::vector<double>& p, const std::vector<double>& q) {
+  std::vector<double> difference;
+  for (std::size_t i = 0; i < std::min(p.size(), q.size()); ++i) {
+    difference.push_back(p[i] - q[i]);
+  }
+  return difference;
+}
 
 BootstrapResult BlockBootstrap(const std::vector<double>& difference, int block, int draws,
                                std::uint64_t seed) {
@@ -28,6 +37,9 @@ BootstrapResult BlockBootstrap(const std::vector<double>& difference, int block,
     }
     means.push_back(mean(sum));
   }
+  double spread = 0;
+  for (double drawn : means) spread += (drawn - result.mean) * (drawn - result.mean);
+  result.error = std::sqrt(spread / static_cast<double>(means.size()));
   std::sort(means.begin(), means.end());
   const auto at = [&](double share) {
     return means[static_cast<std::size_t>(share * static_cast<double>(means.size() - 1))];

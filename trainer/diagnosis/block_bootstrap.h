@@ -13,8 +13,12 @@ struct BootstrapResult {
   double mean = 0;  // of the differences
   double low = 0;   // bounds of a 95 % interval of it
   double high = 0;
-  double p = 1;  // share of draws with a mean of 0 or less
+  double error = 0;  // standard error of the mean
+  double p = 1;      // share of draws with a mean of 0 or less
 };
+
+// Frame by frame, p - q; both of the same frames.
+std::vector<double> Difference(const std::vector<double>& p, const std::vector<double>& q);
 
 // `difference`: error of the first model minus that of the second, of each frame.
 BootstrapResult BlockBootstrap(const std::vector<double>& difference, int block, int draws,

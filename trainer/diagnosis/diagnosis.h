@@ -4,14 +4,13 @@
 //   1  noise    from the measurements alone (noise_floor.h)
 //   2  refit    of the model without any new effect, on the fit frames
 //   3  trace    of every effect: how much a linearised fit with its parameters added would lower
-//               the misfit, from each of its starts
-//   4  refit    of the best few effects, each together with the model's own parameters
-//   5  choose   the one that is best on frames not fitted; accept it if it beats the refit without
-//               it by more than chance (paired block bootstrap) and by more than a small part
+//               the misfit, from each of its starts (effect_trace.h)
+//   4  search   of the best effects, each on each body that comes into question
+//               (diagnosis_body.h), by refits over longer and longer horizons (effect_search.h)
+//   5  choose   the one that is best on frames not fitted, or a simpler one that is as good; with
+//               its single springs fitted, too, it is accepted if it beats the refit without it
+//               by more than chance (paired block bootstrap) and by more than a small part
 //   6  repeat from 3, until nothing is accepted
-// A twin that was trained on one of the recordings has bent its single springs to what its model
-// lacks: they start again from equal ones, and are fitted at the end of 2 and 4. A twin that was
-// trained on others knows its object: then its own parameters hardly move.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 
@@ -22,7 +21,9 @@
 #include <vector>
 
 #include "trainer/diagnosis/block_bootstrap.h"
-#include "trainer/diagnosis/effect_problem.h"
+#include "trainer/diagnosis/effect_certainty.h"
+#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/unexplained.h"
 #include "twin/recording.h"
 #include "twin/twin.h"
 
@@ -33,13 +34,10 @@ struct DiagnosisOptions {
   std::uint64_t seed = 0;
   int most_effects = 3;       // accepted
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
-  double least_gain = 0.15;   // part of the error above the noise floor that an effect must explain
+  // What an effect must explain at least: a part of the error above the noise floor, and a part of
+  // the noise floor.
+  double least_gain = 0.25, least_noise = 0.2;
   std::function<void(double share, const std::string& status)> progress;  // may throw to stop
-};
-
-// Mean track errors, m; NaN where there are no such frames.
-struct TrackPair {
-  double fit, held;
 };
 
 struct EffectCandidate {
@@ -48,15 +46,7 @@ struct EffectCandidate {
   std::optional<TrackPair> refit;  // of the best few
   BootstrapResult gain;            // on held-out frames against the refit without it
   EffectValues values;             // refitted
-};
-
-// What no effect explains, if the error on held-out frames stays well above the noise floor.
-struct Unexplained {
-  double track = 0;                      // error left above the noise floor, m
-  int point = 0;                         // where it is largest ...
-  Eigen::Vector3d position;              // ... its place in the reference configuration, m
-  double first_time = 0, last_time = 0;  // when most of it is seen, s
-  Eigen::Vector3d direction;             // mean direction of measured minus predicted there
+  bool alike = false;              // as good as the effect that was chosen, by one standard error
 };
 
 struct Diagnosis {
@@ -65,6 +55,7 @@ struct Diagnosis {
   TrackPair before{}, after{};
   BootstrapResult gain;  // of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;
+  std::vector<ValueCertainty> certainty;    // of the values of `effects`, one after the other
   std::vector<EffectCandidate> candidates;  // of the first round, best first
   std::optional<Unexplained> unexplained;
   FrameTrack before_track, after_track;  // on held-out frames

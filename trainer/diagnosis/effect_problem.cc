@@ -30,11 +30,6 @@ void ForEachSeen(const SplitRecording& split, Use use, Visit visit) {
 
 }  // namespace
 
-int SplitRecording::last(Use wanted) const {
-  const auto found = std::find(use.rbegin(), use.rend(), wanted);
-  return static_cast<int>(use.rend() - found);
-}
-
 EffectProblem::EffectProblem(EffectModel model, const std::vector<SplitRecording>& recordings,
                              const Options& options)
     : model_(std::move(model)),

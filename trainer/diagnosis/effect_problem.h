@@ -10,19 +10,11 @@
 #include <vector>
 
 #include "trainer/diagnosis/effect_model.h"
+#include "trainer/diagnosis/split_recording.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/rollout.h"
 
 namespace physpring {
-
-// A recording with the use of each of its frames. Frame 0 has none: it is the start.
-struct SplitRecording {
-  enum class Use { kNone, kFit, kHeld };
-  const Recording* recording;
-  std::vector<Use> use;
-
-  int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
-};
 
 // Mean distance of predicted from measured points of each frame of one use, in order; frames in
 // which nothing was seen are left out.

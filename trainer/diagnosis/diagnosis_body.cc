@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/diagnosis_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "trainer/fit_model.h"
+#include "twin/topology.h"
+
+namespace physpring {
+namespace {
+
+// Of an inner particle, about: on a sheet the first two, three, four shells of a regular grid, in
+// a solid the first two, the first three and part of the fourth.
+const std::vector<int> kNeighbours = {12, 18, 28};
+
+constexpr double kStart = 8;  // sub-steps a frame; the fit looks for a better start itself
+
+// Springs of equal axial stiffness and of their reference lengths, equal dashpots, equal masses.
+SpringMassSystem MakeAlike(const SpringMassSystem& system) {
+  SpringMassSystem alike = system;
+  alike.rest_length = SpringLengths(system.springs, system.position, system.order);
+  alike.stiffness = alike.rest_length.cwiseInverse();
+  alike.dashpot.setOnes();
+  alike.mass.setConstant(system.mass.sum() / system.node_count());
+  return alike;
+}
+
+// The recording with the stress-free shape that the twin knows.
+Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording) {
+  Recording shaped = recording;
+  shaped.rest = system.position;
+  shaped.order = system.order;
+  shaped.mass = system.mass.sum();
+  return shaped;
+}
+
+}  // namespace
+
+std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on) {
+  DiagnosisBody own{twin.levels[0].system, twin.controller_velocity, !trained_on, "as trained"};
+  own.base.effects.clear();
+  if (!trained_on) return {own};
+  own.base = MakeAlike(own.base);
+  std::vector<DiagnosisBody> bodies = {own};
+  TrainOptions options;
+  if (twin.order.size() == 0) options.neighbours = kNeighbours;
+  const Recording shaped = WithShapeOf(own.base, recording);
+  for (const Candidate& candidate : Candidates(shaped, options)) {
+    const SpringMassSystem system = StartSystem(shaped, candidate, kStart);
+    const bool known = std::any_of(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
+      return body.controller_velocity == candidate.controller_velocity &&
+             body.base.springs == system.springs;
+    });
+    if (known) continue;
+    bodies.push_back({system, candidate.controller_velocity, false, candidate.Label()});
+  }
+  return bodies;
+}
+
+}  // namespace physpring

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The models of the body that a diagnosis adds effects to.
+//   A twin that was trained on one of the recordings has bent its choice of neighbours, its common
+//   factors and its single springs to what its model lacks. Whatever it chose is open again: every
+//   neighbour count with either treatment of controllers is a body of equal springs, and which one
+//   is right is found together with the effect.
+//   A twin that was trained on other recordings knows its object: it is the only body, and its own
+//   parameters hardly move.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_BODY_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_BODY_H_
+
+#include <string>
+#include <vector>
+
+#include "twin/recording.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+struct DiagnosisBody {
+  SpringMassSystem base;  // without effects
+  bool controller_velocity = true;
+  bool trusted = false;  // its own parameters hardly move
+  std::string label;
+};
+
+// Never empty; the twin's own model first. `recording` is one of the twin's object.
+std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_BODY_H_

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/effect_certainty.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "trainer/parallel.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kPrecision = 0.25;  // of the prior, as Levenberg-Marquardt has it
+
+// The values of all effects of a system, one after the other.
+Eigen::VectorXd ValuesOf(const SpringMassSystem& system) {
+  Eigen::VectorXd values(0);
+  for (const EffectValues& effect : system.effects) {
+    const Eigen::Index first = values.size();
+    values.conservativeResize(first + effect.values.size());
+    values.tail(effect.values.size()) = effect.values;
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const EffectFit& fit) {
+  EffectProblem problem = fitting.Problem(fit, EffectFitting::Horizon::kAll);
+  if (!problem.FixSubsteps(fit.x)) return {};
+  const auto r = problem.Residuals(fit.x);
+  if (!r || r->size() == 0) return {};
+  const auto size = static_cast<int>(fit.x.size());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(r->size(), size);
+  ParallelFor(size, fitting.threads(), [&](int i) {
+    Eigen::VectorXd moved = fit.x;
+    moved[i] += fitting.difference();
+    if (const auto at = problem.Residuals(moved)) {
+      jacobian.col(i) = (*at - *r) / fitting.difference();
+    }
+  });
+  const double variance =
+      std::max(1e-300, r->squaredNorm() / static_cast<double>(r->size()));
+  Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
+  normal.diagonal().array() += kPrecision;
+  const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+
+  const Eigen::VectorXd values = ValuesOf(problem.model().Apply(fit.x));
+  std::vector<ValueCertainty> certainty;
+  const auto own = size - static_cast<int>(values.size());
+  for (int i = own; i < size; ++i) {
+    // how far the value moves with its entry of x
+    Eigen::VectorXd moved = fit.x;
+    moved[i] += fitting.difference();
+    const double slope =
+        std::abs(ValuesOf(problem.model().Apply(moved))[i - own] - values[i - own]) /
+        fitting.difference();
+    certainty.push_back({slope * std::sqrt(std::max(0.0, covariance(i, i))),
+                         std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0)});
+  }
+  return certainty;
+}
+
+}  // namespace physpring

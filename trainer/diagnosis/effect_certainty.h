@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well recordings determine an effect's parameters, from the curvature of the misfit: with
+// J = d r / d x of the body's common factors and all effects' parameters together,
+//   N = J^T J / variance + prior,   covariance C = N^-1.
+// The variance is that of the residuals left, so that what the model still gets wrong widens the
+// intervals; that neighbouring residuals are alike is not counted, so they are still too narrow.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_CERTAINTY_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_CERTAINTY_H_
+
+#include <vector>
+
+#include "trainer/diagnosis/effect_fit.h"
+
+namespace physpring {
+
+struct ValueCertainty {
+  double error = 0;  // standard error, in the value's unit
+  // The part of what the value does to the motion that other parameters could do as well (its
+  // squared multiple correlation): near 1, the recordings cannot tell them apart.
+  double shared = 0;
+};
+
+// Of the effects' values, one effect after the other, at a fit's common factors; empty if it cannot
+// be evaluated.
+std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const EffectFit& fit);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_CERTAINTY_H_

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/effect_fit.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "trainer/fit_model.h"
+#include "trainer/gauss_newton.h"
+#include "trainer/levenberg_marquardt.h"
+#include "trainer/parallel.h"
+#include "trainer/start_system.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kShort = 0.3;         // part of the fit frames of the short horizon
+constexpr double kTrustedScale = 0.05;  // of common factors that hardly move
+constexpr double kSoftest = 2, kStiffest = 64;  // start systems tried, in sub-steps a frame
+constexpr int kSpringConjugateGradients = 20;
+// Of an effect's parameters beside the springs' own (fit_model.h), as Levenberg-Marquardt has it.
+constexpr double kEffectPrecision = 0.25, kEffectScale = 30;
+
+constexpr double kSlow = 0.99;  // a step of Gauss-Newton that leaves more gains little ...
+constexpr int kMostSlow = 2;    // ... and so many in a row end it
+// Sub-steps a second at most, as in training: common factors leave room for single springs.
+constexpr double kMostRate = 10000, kMostCommonRate = 5000;
+
+// Calls `work` for each fit and takes out those for which it returns false.
+template <class Work>
+void ForEach(int threads, std::vector<EffectFit>* fits, Work work) {
+  std::vector<char> good(fits->size(), 0);
+  ParallelFor(static_cast<int>(fits->size()), threads, [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    good[n] = work(&(*fits)[n]) ? 1 : 0;
+  });
+  std::vector<EffectFit> kept;
+  for (std::size_t n = 0; n < fits->size(); ++n) {
+    if (good[n] != 0) kept.push_back(std::move((*fits)[n]));
+  }
+  *fits = std::move(kept);
+}
+
+// The trainer's, and for the effects the one of Levenberg-Marquardt.
+GaussNewtonOptions Prior(const EffectModel& model) {
+  GaussNewtonOptions options = SpringPrior(model.own());
+  options.conjugate_gradient_steps = kSpringConjugateGradients;
+  const auto append = [&](double value, Eigen::VectorXd* values) {
+    const Eigen::Index own = values->size();
+    values->conservativeResize(model.size());
+    values->tail(model.size() - own).setConstant(value);
+  };
+  append(kEffectPrecision, &options.precision);
+  append(kEffectScale, &options.scale);
+  return options;
+}
+
+}  // namespace
+
+EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
+                             std::vector<SplitRecording> recordings, int threads)
+    : bodies_(std::move(bodies)),
+      recordings_(std::move(recordings)),
+      short_(Shorten(recordings_, kShort)),
+      threads_(threads) {}
+
+double EffectFitting::difference() const {
+  return recordings_[0].recording->ground ? 1e-2 : 1e-3;
+}
+
+EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) {
+  const Recording& recording = *recordings_[0].recording;
+  EffectFit fit;
+  fit.body = body;
+  fit.start = effects;
+  DiagnosisBody& tried = bodies_[body];
+  const SpringMassSystem base = tried.base;
+  for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
+    SpringMassSystem scaled = base;
+    if (!tried.trusted) ScaleToSubsteps(1 / recording.fps, substeps, kStepSafety, &scaled);
+    EffectProblem problem =
+        MakeProblem(EffectModel(CommonFactors(scaled, recording), 1, effects),
+                    tried.controller_velocity, Horizon::kShort);
+    const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());
+    if (!problem.FixSubsteps(x)) continue;
+    const auto r = problem.Residuals(x);
+    if (!r || r->squaredNorm() >= fit.misfit) continue;
+    fit.misfit = r->squaredNorm();
+    fit.x = x;
+    tried.base = scaled;
+    if (tried.trusted) break;
+  }
+  return fit;
+}
+
+EffectModel EffectFitting::Model(const EffectFit& fit) const {
+  const DiagnosisBody& body = bodies_[fit.body];
+  return EffectModel(CommonFactors(body.base, *recordings_[0].recording),
+                     body.trusted ? kTrustedScale : 1, fit.start);
+}
+
+EffectProblem EffectFitting::Problem(const EffectFit& fit, Horizon horizon) const {
+  return MakeProblem(Model(fit), bodies_[fit.body].controller_velocity, horizon);
+}
+
+EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velocity,
+                                         Horizon horizon) const {
+  EffectProblem::Options options;
+  options.most_rate = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal
+                          ? kMostCommonRate
+                          : kMostRate;
+  options.controller_velocity = controller_velocity;
+  options.difference = recordings_[0].recording->ground ? 1e-3 : 1e-5;
+  return EffectProblem(std::move(model), horizon == Horizon::kShort ? short_ : recordings_,
+                       options);
+}
+
+bool EffectFitting::DescendOne(Horizon horizon, int steps, EffectFit* fit) const {
+  EffectProblem problem = Problem(*fit, horizon);
+  LevenbergMarquardtOptions options;
+  options.difference = difference();
+  LevenbergMarquardtState state;
+  state.x = fit->x;
+  state.damping = fit->damping;
+  for (int step = 0; step < steps && !state.converged; ++step) {
+    if (!problem.FixSubsteps(state.x)) return false;
+    state = LevenbergMarquardtStep(
+        [&](const Eigen::VectorXd& at) { return problem.Residuals(at); }, state, options);
+  }
+  if (!(state.mean_square > 0)) return false;
+  fit->x = state.x;
+  fit->damping = state.damping;
+  fit->misfit = state.mean_square;
+  fit->converged = state.converged;
+  return true;
+}
+
+void EffectFitting::Descend(Horizon horizon, int steps, std::vector<EffectFit>* fits) const {
+  ForEach(threads_, fits, [&](EffectFit* fit) { return DescendOne(horizon, steps, fit); });
+}
+
+bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
+                            EffectFit* fit) const {
+  if (!problem->FixSubsteps(x)) return false;
+  auto predicted = problem->Predict(x);
+  if (!predicted) return false;
+  fit->system = problem->model().Apply(x);
+  fit->predicted = std::move(*predicted);
+  fit->held = TrackOf(recordings_, fit->predicted, SplitRecording::Use::kHeld);
+  fit->track = {Mean(TrackOf(recordings_, fit->predicted, SplitRecording::Use::kFit)),
+                Mean(fit->held)};
+  return true;
+}
+
+bool EffectFitting::Judge(EffectFit* fit) const {
+  EffectProblem problem = Problem(*fit, Horizon::kAll);
+  return Predict(&problem, fit->x, fit);
+}
+
+void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
+  ForEach(threads_, fits, [&](EffectFit* fit) { return Judge(fit); });
+}
+
+void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
+  SpringMassSystem base = fit->system;
+  base.effects.clear();
+  EffectProblem problem = MakeProblem(
+      EffectModel(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects),
+      bodies_[fit->body].controller_velocity, Horizon::kAll);
+  const GaussNewtonOptions prior = Prior(problem.model());
+  GaussNewtonState state;
+  state.x = Eigen::VectorXd::Zero(problem.model().size());
+  state.damping = 1e-3;
+  int slow = 0;
+  for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
+    const double before = state.mean_square;
+    state = GaussNewtonStep(&problem, state, prior);
+    slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
+  }
+  EffectFit refitted = *fit;
+  if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
+}
+
+}  // namespace physpring

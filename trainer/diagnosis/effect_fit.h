@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fits of bodies with effects: the body's common factors and the effects' parameters together, by
+// Levenberg-Marquardt, and single springs besides, by Gauss-Newton.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_FIT_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_FIT_H_
+
+#include <limits>
+#include <vector>
+
+#include "trainer/diagnosis/diagnosis_body.h"
+#include "trainer/diagnosis/effect_problem.h"
+
+namespace physpring {
+
+// Mean track errors, m; NaN where there are no such frames.
+struct TrackPair {
+  double fit, held;
+};
+
+struct EffectFit {
+  std::size_t body = 0;
+  std::vector<EffectValues> start;  // of the effects, as the search began
+  Eigen::VectorXd x;                // common factors, then effects (effect_model.h)
+  double misfit = std::numeric_limits<double>::infinity();  // mean of r^2, m^2, where last fitted
+  double damping = 1e-2;
+  bool converged = false;
+
+  // From Judge and RefitSprings.
+  SpringMassSystem system;
+  std::vector<std::vector<Points>> predicted;
+  FrameTrack held;
+  TrackPair track{};
+};
+
+class EffectFitting {
+ public:
+  enum class Horizon { kShort, kAll };  // the first part of the fit frames, or all
+
+  EffectFitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings,
+                int threads);
+
+  const std::vector<DiagnosisBody>& bodies() const { return bodies_; }
+  const std::vector<SplitRecording>& recordings() const { return recordings_; }
+  int threads() const { return threads_; }
+  double difference() const;  // step of forward differences; longer where contacts jump
+
+  // A fit of that body that begins as soft or stiff as predicts best. Not fitted yet; its x is
+  // empty if the motion diverges at each stiffness.
+  EffectFit Begin(std::size_t body, const std::vector<EffectValues>& effects);
+
+  EffectModel Model(const EffectFit& fit) const;
+  EffectProblem Problem(const EffectFit& fit, Horizon horizon) const;
+
+  // At most `steps` of Levenberg-Marquardt for each of the fits, on several threads. Those that
+  // cannot be evaluated are taken out.
+  void Descend(Horizon horizon, int steps, std::vector<EffectFit>* fits) const;
+
+  // Predicts everything; false if a motion diverges.
+  bool Judge(EffectFit* fit) const;
+  void JudgeAll(std::vector<EffectFit>* fits) const;  // those that diverge are taken out
+
+  // Single springs, too, for at most `steps`; the fit stays as it is if that diverges.
+  void RefitSprings(int steps, EffectFit* fit) const;
+
+ private:
+  bool Predict(EffectProblem* problem, const Eigen::VectorXd& x, EffectFit* fit) const;
+  EffectProblem MakeProblem(EffectModel model, bool controller_velocity, Horizon horizon) const;
+  bool DescendOne(Horizon horizon, int steps, EffectFit* fit) const;
+
+  std::vector<DiagnosisBody> bodies_;
+  std::vector<SplitRecording> recordings_, short_;
+  int threads_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_FIT_H_

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frames of a recording a diagnosis fits, and which it judges by.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
+
+#include <vector>
+
+#include "twin/recording.h"
+
+namespace physpring {
+
+// A recording with the use of each of its frames. Frame 0 has none: it is the start.
+struct SplitRecording {
+  enum class Use { kNone, kFit, kHeld };
+  const Recording* recording;
+  std::vector<Use> use;
+
+  int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
+};
+
+// All frames for one use.
+SplitRecording UseAll(const Recording& recording, SplitRecording::Use use);
+
+// The future of a recording (from train_frames on) held out, or every fourth block of 0.3 s where
+// it has none; the rest to fit.
+SplitRecording HoldOutFrames(const Recording& recording);
+
+// The first `part` of the fit frames alone: over a shorter time a motion depends on its parameters
+// more evenly.
+std::vector<SplitRecording> Shorten(std::vector<SplitRecording> recordings, double part);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
