@@ -21,7 +21,7 @@ using Use = SplitRecording::Use;
 
 constexpr int kSpringSteps = 10;  // of Gauss-Newton, after an effect is found
 constexpr int kDraws = 2000;
-constexpr double kBlock = 0.2;        // s, of the bootstrap
+constexpr double kBlock = 0.2;  // s, of the bootstrap
 // Held-out errors, times the noise floor: below the first, nothing is missing; below the second,
 // nothing besides the effects that were found; above the third, something is.
 constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.5;
@@ -58,9 +58,8 @@ std::vector<const Effect*> EffectsFor(const Recording& recording) {
 }
 
 // All effects: those refitted first, by their error, then the others, by their trace.
-std::vector<EffectCandidate> RankEffects(const EffectSearchResult& search,
-                                         const EffectFit& without, std::size_t chosen, int block,
-                                         std::uint64_t seed) {
+std::vector<EffectCandidate> RankEffects(const EffectSearchResult& search, const EffectFit& without,
+                                         std::size_t chosen, int block, std::uint64_t seed) {
   std::vector<EffectCandidate> candidates;
   for (const EffectTrace& trace : search.traces) {
     EffectCandidate candidate{trace.effect->name(), trace.score, {}, {}, {}, false};
@@ -69,8 +68,8 @@ std::vector<EffectCandidate> RankEffects(const EffectSearchResult& search,
       candidate.refit = fit.track;
       candidate.gain = BlockBootstrap(Difference(without.held, fit.held), block, kDraws, seed);
       candidate.values = fit.system.effects.back();
-      const BootstrapResult worse = BlockBootstrap(
-          Difference(fit.held, search.fits[chosen].held), block, kDraws, seed);
+      const BootstrapResult worse =
+          BlockBootstrap(Difference(fit.held, search.fits[chosen].held), block, kDraws, seed);
       candidate.alike = worse.mean <= worse.error;
     }
     candidates.push_back(std::move(candidate));
@@ -118,10 +117,9 @@ class Loop {
     if (accepted_.track.held < explained * noise_floor_) return false;
     const double first = 0.2 + 0.8 * round / options_.most_effects;
     const double share = 0.8 / options_.most_effects;
-    const EffectSearchResult search =
-        SearchEffects(*fitting_, bodies_, effects_, [&](double part, const std::string& status) {
-          Report(first + share * part, status);
-        });
+    const EffectSearchResult search = SearchEffects(
+        *fitting_, bodies_, effects_,
+        [&](double part, const std::string& status) { Report(first + share * part, status); });
     if (search.fits.empty()) return false;
     const std::size_t best = ChooseSimplest(search.fits, block_, options_.seed);
     if (round == 0) candidates_ = RankEffects(search, common_, best, block_, options_.seed);

@@ -39,8 +39,7 @@ std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const Effe
       jacobian.col(i) = (*at - *r) / fitting.difference();
     }
   });
-  const double variance =
-      std::max(1e-300, r->squaredNorm() / static_cast<double>(r->size()));
+  const double variance = std::max(1e-300, r->squaredNorm() / static_cast<double>(r->size()));
   Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
   normal.diagonal().array() += kPrecision;
   const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));

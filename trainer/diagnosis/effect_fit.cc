@@ -9,12 +9,13 @@
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/parallel.h"
 #include "trainer/start_system.h"
+#include "twin/stability.h"
 
 namespace physpring {
 namespace {
 
-constexpr double kShort = 0.3;         // part of the fit frames of the short horizon
-constexpr double kTrustedScale = 0.05;  // of common factors that hardly move
+constexpr double kShort = 0.3;                  // part of the fit frames of the short horizon
+constexpr double kTrustedScale = 0.05;          // of common factors that hardly move
 constexpr double kSoftest = 2, kStiffest = 64;  // start systems tried, in sub-steps a frame
 constexpr int kSpringConjugateGradients = 20;
 // Of an effect's parameters beside the springs' own (fit_model.h), as Levenberg-Marquardt has it.
@@ -63,9 +64,7 @@ EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
       short_(Shorten(recordings_, kShort)),
       threads_(threads) {}
 
-double EffectFitting::difference() const {
-  return recordings_[0].recording->ground ? 1e-2 : 1e-3;
-}
+double EffectFitting::difference() const { return recordings_[0].recording->ground ? 1e-2 : 1e-3; }
 
 EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) {
   const Recording& recording = *recordings_[0].recording;
@@ -77,9 +76,8 @@ EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>
   for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
     SpringMassSystem scaled = base;
     if (!tried.trusted) ScaleToSubsteps(1 / recording.fps, substeps, kStepSafety, &scaled);
-    EffectProblem problem =
-        MakeProblem(EffectModel(CommonFactors(scaled, recording), 1, effects),
-                    tried.controller_velocity, Horizon::kShort);
+    EffectProblem problem = MakeProblem(EffectModel(CommonFactors(scaled, recording), 1, effects),
+                                        tried.controller_velocity, Horizon::kShort);
     const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());
     if (!problem.FixSubsteps(x)) continue;
     const auto r = problem.Residuals(x);
@@ -123,8 +121,8 @@ bool EffectFitting::DescendOne(Horizon horizon, int steps, EffectFit* fit) const
   state.damping = fit->damping;
   for (int step = 0; step < steps && !state.converged; ++step) {
     if (!problem.FixSubsteps(state.x)) return false;
-    state = LevenbergMarquardtStep(
-        [&](const Eigen::VectorXd& at) { return problem.Residuals(at); }, state, options);
+    state = LevenbergMarquardtStep([&](const Eigen::VectorXd& at) { return problem.Residuals(at); },
+                                   state, options);
   }
   if (!(state.mean_square > 0)) return false;
   fit->x = state.x;

@@ -17,6 +17,9 @@ using Horizon = EffectFitting::Horizon;
 constexpr std::size_t kTracedBodies = 2;
 constexpr std::size_t kTracedEffects = 6;  // that are refitted
 constexpr int kBodySteps = 10;
+// Physics that is missing is missing from all bodies alike: one whose mean square misfit is so many
+// times that of the best is not tried with effects.
+constexpr double kHopeless = 2;
 constexpr int kDraws = 1000;
 
 // Steps of all fits, and how many of them go on after that: in all, and with one effect.
@@ -46,9 +49,8 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* f
   std::stable_sort(fits->begin(), fits->end(),
                    [](const EffectFit& p, const EffectFit& q) { return p.misfit < q.misfit; });
   std::map<std::string, std::size_t> kept;
-  std::erase_if(*fits, [&](const EffectFit& fit) {
-    return kept[NewEffect(fit)]++ >= of_an_effect;
-  });
+  std::erase_if(*fits,
+                [&](const EffectFit& fit) { return kept[NewEffect(fit)]++ >= of_an_effect; });
   fits->resize(std::min(fits->size(), count));
 }
 
@@ -94,8 +96,7 @@ std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<Effec
   return bodies[0];
 }
 
-EffectSearchResult SearchEffects(const EffectFitting& fitting,
-                                 const std::vector<EffectFit>& bodies,
+EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                  const std::vector<const Effect*>& effects,
                                  const SearchProgress& progress) {
   EffectSearchResult result;
@@ -120,6 +121,7 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting,
   for (std::size_t n : order) {
     const EffectTrace& trace = result.traces[n];
     for (const EffectFit& body : bodies) {
+      if (body.misfit > kHopeless * traced[0].misfit) continue;
       EffectFit fit = body;
       fit.start.push_back({trace.effect->name(), trace.start});
       fit.x.conservativeResizeLike(Eigen::VectorXd::Zero(body.x.size() + trace.start.size()));
@@ -134,12 +136,12 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting,
 }
 
 std::size_t ChooseSimplest(const std::vector<EffectFit>& fits, int block, std::uint64_t seed) {
-  const auto best = static_cast<std::size_t>(
-      std::min_element(fits.begin(), fits.end(),
-                       [](const EffectFit& p, const EffectFit& q) {
-                         return p.track.held < q.track.held;
-                       }) -
-      fits.begin());
+  const auto best =
+      static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(),
+                                                [](const EffectFit& p, const EffectFit& q) {
+                                                  return p.track.held < q.track.held;
+                                                }) -
+                               fits.begin());
   std::size_t chosen = best;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     if (ParameterCount(fits[i]) >= ParameterCount(fits[chosen])) continue;

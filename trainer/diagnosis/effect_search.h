@@ -31,8 +31,7 @@ struct EffectSearchResult {
 };
 
 // `bodies`: fits without the effect, over the short horizon.
-EffectSearchResult SearchEffects(const EffectFitting& fitting,
-                                 const std::vector<EffectFit>& bodies,
+EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                  const std::vector<const Effect*>& effects,
                                  const SearchProgress& progress);
 

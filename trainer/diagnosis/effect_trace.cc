@@ -145,9 +145,8 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
     return p.effect != q.effect ? p.effect < q.effect : p.score > q.score;
   });
   std::vector<std::size_t> kept(effects.size(), 0);
-  std::erase_if(jobs, [&](const Job& job) {
-    return job.score < 0 || kept[job.effect]++ >= kStarts;
-  });
+  std::erase_if(jobs,
+                [&](const Job& job) { return job.score < 0 || kept[job.effect]++ >= kStarts; });
   for_each_job([&](const Effect& effect, const Eigen::VectorXd& start) {
     return tracer.Score(effect, start);
   });

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small bodies of tendons in MuJoCo with an effect that nobody declares: what a diagnosis is tried
+// on. All effects are MuJoCo's own (attributes of tendons, bodies and options, ellipsoid fluid
+// forces), or forces applied from outside; none of the twin's effects is used.
+#ifndef PHYSPRING_BENCH_UNDECLARED_EFFECTS_H_
+#define PHYSPRING_BENCH_UNDECLARED_EFFECTS_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "twin/recording.h"
+
+namespace physpring {
+
+enum class Body { kRope, kSheet, kBlock };
+
+// Names as in twin/effects, "none", and "moving_attraction": to a point that moves, which is not in
+// the list of effects that a diagnosis knows.
+const std::vector<std::string>& UndeclaredEffects();
+
+struct MadeRecordings {
+  Recording fit, other;     // two motions of one body
+  double displacement = 0;  // mean distance that the effect makes on the first one, m
+};
+
+// `noise`: standard deviation of a coordinate, m. The seed draws the motions, the effect's size and
+// place, and the noise. Throws Error if MuJoCo warns.
+MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise,
+                              std::uint64_t seed);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_BENCH_UNDECLARED_EFFECTS_H_
