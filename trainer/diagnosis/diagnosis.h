@@ -36,7 +36,7 @@ struct DiagnosisOptions {
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
   // What an effect must explain at least: a part of the error above the noise floor, and a part of
   // the noise floor.
-  double least_gain = 0.25, least_noise = 0.2;
+  double least_gain = 0.4, least_noise = 0.2;
   std::function<void(double share, const std::string& status)> progress;  // may throw to stop
 };
 

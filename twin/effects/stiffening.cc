@@ -38,7 +38,7 @@ class Stiffening : public Effect {
     return {{"cubic_stiffness_ratio", 0, 1e4, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Constant(1, 1)};
+    return {Eigen::VectorXd::Constant(1, 1), Eigen::VectorXd::Constant(1, 10)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

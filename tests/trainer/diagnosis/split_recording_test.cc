@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/split_recording.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace physpring {
+namespace {
+
+using Use = SplitRecording::Use;
+
+Recording Frames(int frames, int train_frames) {
+  Recording recording;
+  recording.fps = 10;
+  recording.train_frames = train_frames;
+  recording.points.assign(static_cast<std::size_t>(frames), Points::Zero(3, 1));
+  return recording;
+}
+
+long Count(const SplitRecording& split, Use use) {
+  return std::count(split.use.begin(), split.use.end(), use);
+}
+
+TEST(SplitRecording, HoldsOutTheFuture) {
+  const Recording recording = Frames(20, 14);
+  const SplitRecording split = HoldOutFrames(recording);
+  EXPECT_EQ(split.last(Use::kFit), 14);
+  EXPECT_EQ(Count(split, Use::kHeld), 6);
+  EXPECT_EQ(split.use[0], Use::kNone);
+}
+
+TEST(SplitRecording, HoldsOutEveryFourthBlockWhereThereIsNoFuture) {
+  const Recording recording = Frames(25, 25);  // blocks of three frames
+  const SplitRecording split = HoldOutFrames(recording);
+  EXPECT_EQ(split.use[8], Use::kFit);
+  for (std::size_t frame = 9; frame < 12; ++frame) EXPECT_EQ(split.use[frame], Use::kHeld);
+  EXPECT_EQ(split.use[12], Use::kFit);
+  EXPECT_EQ(Count(split, Use::kHeld), 6);
+}
+
+TEST(SplitRecording, KeepsTheFirstPartOfTheFitFramesAlone) {
+  const Recording recording = Frames(20, 14);
+  const auto kept = Shorten({HoldOutFrames(recording), UseAll(recording, Use::kHeld)}, 0.5);
+  EXPECT_EQ(Count(kept[0], Use::kFit), 6);  // 1 to 6, of 14 with the start
+  EXPECT_EQ(Count(kept[0], Use::kHeld), 0);
+  EXPECT_EQ(Count(kept[1], Use::kHeld), 0);
+}
+
+}  // namespace
+}  // namespace physpring
