@@ -20,7 +20,7 @@ struct EpisodeStart {
 struct Disturbance {
   double action = 0;  // m, standard deviation of each coordinate of the actions' offset: an error
                       // of the hand's place, as a camera that is calibrated badly gives
-  double start = 0;  // m, by which the object lies elsewhere, in a random direction
+  double start = 0;   // m, by which the object lies elsewhere, in a random direction
 };
 
 // Depends on the arguments only: the same for every level. The start's disturbance changes nothing
