@@ -10,12 +10,12 @@ namespace physpring {
 namespace {
 
 // The pads come down to both sides of the diagonal, so far from the corner, and close: the cloth
-// between them buckles up. What they hold then hangs down by less than that.
-constexpr double kPinch = 0.05;    // m
-constexpr double kTable = 0.022;   // m, of the hand: the pads press on the table
-constexpr double kCarry = 0.09;    // m, of the hand above the table
-constexpr double kLay = 0.035;     // m, of the hand where it opens
-constexpr double kForward = 0.14;  // m: the corner falls so far in front of where it was let go
+// between them buckles up.
+constexpr double kPinch = 0.035;  // m
+constexpr double kTable = 0.022;  // m, of the hand: the pads press on the table
+constexpr double kLay = 0.055;    // m, of the hand where it opens
+// The arc is that much tighter than the cloth would allow: what hangs slack falls forward, m.
+constexpr double kSlack = 0.055;
 
 }  // namespace
 
@@ -27,25 +27,32 @@ ClothFolding::ClothFolding(const Task& task) {
 }
 
 std::vector<Waypoint> ClothFolding::Plan(int leg, const Observation& observation) {
-  const Eigen::Vector3d taken = observation.particles.col(taken_);
-  const Eigen::Vector3d target = observation.particles.col(target_);
-  Eigen::Vector3d way = target - taken;
-  way.z() = 0;
-  if (!way.allFinite()) throw PolicyError("does not see the cloth");
-  if (leg == 0) towards_target_ = way.normalized();
-  const double yaw = std::atan2(towards_target_.y(), towards_target_.x());
+  if (leg > 0) return {};
+  Eigen::Vector3d taken = observation.particles.col(taken_);
+  Eigen::Vector3d target = observation.particles.col(target_);
+  taken.z() = target.z() = 0;
+  const double diagonal = (target - taken).norm();
+  if (!(diagonal > 2 * (kPinch + kSlack))) throw PolicyError("does not see the cloth spread out");
+  const Eigen::Vector3d along = (target - taken) / diagonal;
+  const double yaw = std::atan2(along.y(), along.x());
   const auto at = [&](const Eigen::Vector3d& place, double z, double gripper, int frames) {
     return HandDown({place.x(), place.y(), z}, yaw, gripper, frames);
   };
-  if (leg == 0) {
-    const Eigen::Vector3d pinch = taken + kPinch * towards_target_;
-    return {at(pinch, 0.15, 0, 40), at(pinch, kTable, 0, 30), at(pinch, kTable, 1, 25),
-            at(pinch, 0.05, 1, 15), at(pinch + 0.3 * way, kCarry + 0.03, 1, 40)};
+  const Eigen::Vector3d pinch = taken + kPinch * along, middle = (taken + target) / 2;
+  std::vector<Waypoint> way = {at(pinch, 0.15, 0, 40), at(pinch, kTable, 0, 30),
+                               at(pinch, kTable, 1, 25)};
+  const double radius = diagonal / 2 - kPinch - kSlack;
+  for (const double degrees : {25, 55, 90, 125, 150}) {
+    const double angle = Radians(degrees);
+    way.push_back(
+        at(middle - radius * std::cos(angle) * along, kTable + radius * std::sin(angle), 1, 20));
   }
-  if (leg > 1) return {};
-  const Eigen::Vector3d lay = target - (kPinch + kForward) * towards_target_;
-  return {at(lay - 0.03 * towards_target_, kCarry, 1, 45), at(lay, kLay, 1, 25),
-          at(lay, kLay, 0, 15), at(lay, 0.14, 0, 20)};
+  const Eigen::Vector3d lay = middle + radius * along;
+  for (const Waypoint& last : {at(lay, kLay, 1, 20), at(lay, kLay, 0, 18),
+                               at(lay, kLay + 0.03, 0, 30), at(lay, 0.14, 0, 20)}) {
+    way.push_back(last);
+  }
+  return way;
 }
 
 }  // namespace physpring

@@ -16,8 +16,7 @@ class ClothFolding : public WaypointPolicy {
   std::vector<Waypoint> Plan(int leg, const Observation& observation) override;
 
  private:
-  int taken_, target_;                                        // particles
-  Eigen::Vector3d towards_target_ = Eigen::Vector3d::Zero();  // horizontal, |.| = 1
+  int taken_, target_;  // particles
 };
 
 }  // namespace physpring

@@ -11,6 +11,7 @@
 
 #include "rollout/policies/cloth_folding.h"
 #include "rollout/policies/rope_routing.h"
+#include "rollout/policies/t_push.h"
 #include "rollout/policies/toy_packing.h"
 #include "twin/error.h"
 #include "twin/quote.h"
@@ -24,6 +25,7 @@ const std::map<std::string, Make>& Policies() {
   static const std::map<std::string, Make> policies = {
       {"cloth_folding", [](const Task& task) { return std::make_unique<ClothFolding>(task); }},
       {"rope_routing", [](const Task& task) { return std::make_unique<RopeRouting>(task); }},
+      {"t_push", [](const Task& task) { return std::make_unique<TPush>(task); }},
       {"toy_packing", [](const Task& task) { return std::make_unique<ToyPacking>(task); }},
   };
   return policies;
