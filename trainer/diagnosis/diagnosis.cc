@@ -26,6 +26,10 @@ constexpr double kBlock = 0.2;  // s, of the bootstrap
 // nothing besides the effects that were found; above the third, something is.
 constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.5;
 
+// Part of the error above the noise that an effect must explain with common factors alone, where
+// single springs could do without it.
+constexpr double kSimplyExplained = 0.8;
+
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
     return !trained.hash.empty() && trained.hash == recording.hash;
@@ -113,8 +117,9 @@ class Loop {
 
   // Looks for one more effect; false if none is accepted.
   bool Round(int round) {
-    const double explained = round == 0 ? kExplained : kExplainedByEffects;
-    if (accepted_.track.held < explained * noise_floor_) return false;
+    const bool explained = round == 0 ? common_.track.held < kExplained * noise_floor_
+                                      : accepted_.track.held < kExplainedByEffects * noise_floor_;
+    if (explained) return false;
     const double first = 0.2 + 0.8 * round / options_.most_effects;
     const double share = 0.8 / options_.most_effects;
     const EffectSearchResult search = SearchEffects(
@@ -127,7 +132,14 @@ class Loop {
     EffectFit with_springs = chosen;
     Report(first + 0.9 * share, "refitting springs with " + chosen.start.back().name);
     if (trained_on_) fitting_->RefitSprings(kSpringSteps, &with_springs);
-    if (!IsWorthIt(with_springs, static_cast<int>(search.fits.size()))) return false;
+    const auto tried = static_cast<int>(search.fits.size());
+    // hundreds of springs may bend to what a few parameters explain
+    const bool without_springs =
+        IsWorthIt(common_, chosen, kSimplyExplained, tried) &&
+        with_springs.track.held < accepted_.track.held + options_.least_noise * noise_floor_;
+    if (!without_springs && !IsWorthIt(accepted_, with_springs, options_.least_gain, tried)) {
+      return false;
+    }
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
@@ -139,12 +151,14 @@ class Loop {
     if (options_.progress) options_.progress(share, status);
   }
 
-  // `tried`: refits among which the one was chosen.
-  bool IsWorthIt(const EffectFit& fit, int tried) const {
+  // Whether the effect takes away a part `least_gain` of the error above the noise. `tried`: refits
+  // among which it was chosen.
+  bool IsWorthIt(const EffectFit& without, const EffectFit& with, double least_gain,
+                 int tried) const {
     const BootstrapResult gain =
-        BlockBootstrap(Difference(accepted_.held, fit.held), block_, kDraws, options_.seed);
-    const double excess = std::max(0.0, accepted_.track.held - noise_floor_);
-    return gain.p < options_.false_alarm / tried && gain.mean > options_.least_gain * excess &&
+        BlockBootstrap(Difference(without.held, with.held), block_, kDraws, options_.seed);
+    const double excess = std::max(0.0, without.track.held - noise_floor_);
+    return gain.p < options_.false_alarm / tried && gain.mean > least_gain * excess &&
            gain.mean > options_.least_noise * noise_floor_;
   }
 
