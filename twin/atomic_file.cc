@@ -121,6 +121,10 @@ void ExpectFileWritable(const std::string& path) {
   if (std::filesystem::is_directory(target, ignored)) {
     throw Error(fmt::format("{}: cannot be written: is a folder", path));
   }
+  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
+    throw Error(fmt::format("{}: cannot be written: its folder is missing", path));
+  }
   const std::string temporary = TemporaryName(target);
   if (!WriteNewFile(temporary, "")) FailToWrite(path, errno);
   unlink(temporary.c_str());

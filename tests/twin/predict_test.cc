@@ -131,13 +131,13 @@ TEST(ChooseSubsteps, KeepsTheSubStepOfTraining) {
   EXPECT_EQ(ChooseSubsteps(level, 50, 7), 7);
 }
 
-TEST(ChooseSubsteps, TakesHalfTheStableSubStep) {
+TEST(ChooseSubsteps, StaysBelowTheStableSubStep) {
   TwinLevel level = SmallTwin(1).levels[0];
   level.substeps_per_second = 1;
   const double stable = ComputeStabilityBound(level.system).timestep;
   const double substep = 1.0 / 50 / ChooseSubsteps(level, 50, 0);
-  EXPECT_LE(substep, 0.5 * stable);
-  EXPECT_GT(substep, 0.3 * stable);  // whole sub-steps in a frame
+  EXPECT_LE(substep, kStepSafety * stable);
+  EXPECT_GT(substep, 0.6 * kStepSafety * stable);  // whole sub-steps in a frame
 }
 
 }  // namespace
