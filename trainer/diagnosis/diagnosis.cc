@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "trainer/diagnosis/effect_search.h"
@@ -115,6 +116,11 @@ class Loop {
     return true;
   }
 
+  // A fit without a new effect from elsewhere: taken if it predicts the held-out frames better.
+  void Offer(const EffectFit& fit) {
+    if (fit.track.held < accepted_.track.held) accepted_ = fit;
+  }
+
   // Looks for one more effect; false if none is accepted.
   bool Round(int round) {
     const bool explained = round == 0 ? common_.track.held < kExplained * noise_floor_
@@ -173,6 +179,35 @@ class Loop {
   std::vector<EffectCandidate> candidates_;
 };
 
+// The twin as it was trained, nothing if its motion diverges. `like`: a fit of the same recordings.
+std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitRecording>& splits,
+                                   const EffectFit& like) {
+  EffectFit fit = like;
+  fit.as_trained = true;
+  fit.system = twin.levels[0].system;
+  try {
+    for (std::size_t i = 0; i < splits.size(); ++i) {
+      fit.predicted[i] = Predict(twin, 0, *splits[i].recording, {});
+    }
+  } catch (const Error&) {
+    return {};
+  }
+  fit.held = TrackOf(splits, fit.predicted, SplitRecording::Use::kHeld);
+  fit.track = {Mean(TrackOf(splits, fit.predicted, SplitRecording::Use::kFit)), Mean(fit.held)};
+  return fit;
+}
+
+// Whether training has seen none of the frames that are held out.
+bool HasNotSeenHeldOut(const Twin& twin, const std::vector<Recording>& recordings,
+                       const std::vector<Recording>& held_out) {
+  if (!held_out.empty()) {
+    return std::none_of(held_out.begin(), held_out.end(),
+                        [&](const Recording& r) { return TrainedOnThis(twin, r); });
+  }
+  return std::all_of(recordings.begin(), recordings.end(),
+                     [](const Recording& r) { return r.train_frames < r.frame_count(); });
+}
+
 std::ptrdiff_t EffectValueCount(const std::vector<EffectValues>& effects) {
   std::ptrdiff_t count = 0;
   for (const EffectValues& effect : effects) count += effect.values.size();
@@ -218,6 +253,10 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",
                             recordings[0].name, twin.name));
   }
+  // its training took more care than a refit does
+  if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
+    if (const auto trained = AsTrained(twin, splits, loop.accepted())) loop.Offer(*trained);
+  }
   result.before = loop.accepted().track;
   result.before_track = loop.accepted().held;
   for (int round = 0; round < options.most_effects && loop.Round(round); ++round) {
@@ -238,8 +277,9 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   if (accepted.track.held > kUnexplained * result.noise_floor) {
     result.unexplained = FindUnexplained(splits, accepted, result.noise_floor);
   }
-  result.twin = TwinWith(twin, accepted, fitting.bodies()[accepted.body].controller_velocity,
-                         result.effects, recordings);
+  const bool velocity = accepted.as_trained ? twin.controller_velocity
+                                            : fitting.bodies()[accepted.body].controller_velocity;
+  result.twin = TwinWith(twin, accepted, velocity, result.effects, recordings);
   if (options.progress) options.progress(1, "done");
   return result;
 }

@@ -24,6 +24,7 @@ struct EffectFit {
   double misfit = std::numeric_limits<double>::infinity();  // mean of r^2, m^2, where last fitted
   double damping = 1e-2;
   bool converged = false;
+  bool as_trained = false;  // not fitted here: the twin as it came; then `body` says nothing
 
   // From Judge and RefitSprings.
   SpringMassSystem system;
