@@ -15,9 +15,9 @@
 namespace physpring {
 
 struct TrainingRun {
-  Twin twin;                      // as written
-  bool finished = false;          // else a signal came first
-  int signal = 0;                 // that came
+  Twin twin;              // as written
+  bool finished = false;  // else a signal came first
+  int signal = 0;         // that came
   // Where the time went: Fitter::Part and seconds, in the order of their first step; the last one
   // is writing checkpoints.
   std::vector<std::pair<std::string, double>> parts;

@@ -23,7 +23,7 @@ struct TrainOptions {
   // Whether dashpots feel the controllers' velocity; empty: whatever predicts better (full), no
   // (two-stage, as PhysTwin).
   std::optional<bool> controller_velocity;
-  bool self_collision = false;      // particles collide with each other (two-stage only)
+  bool self_collision = false;  // particles collide with each other (two-stage only)
   int threads = 1;
   std::uint64_t seed = 0;
 

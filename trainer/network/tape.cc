@@ -165,12 +165,13 @@ Tape::Node Tape::Distance(Node a, std::vector<std::array<int, 2>> pairs) {
   return Record(distance, [=, this, pairs = std::move(pairs)](const Features& bar, Bars* bars,
                                                               Eigen::VectorXd*) {
     // forward: c_e = |a_i - a_j|
-        Features& a_bar = (*bars)[a.index];
+    Features& a_bar = (*bars)[a.index];
     if (a_bar.size() == 0) a_bar.setZero(values_[a.index].rows(), values_[a.index].cols());
     for (std::size_t e = 0; e < pairs.size(); ++e) {
       const auto [i, j] = pairs[e];
       const auto row = static_cast<Eigen::Index>(e);
-      const Eigen::RowVectorXd part = bar(row, 0) / distance(row, 0) * (values_[a.index].row(i) - values_[a.index].row(j));
+      const Eigen::RowVectorXd part =
+          bar(row, 0) / distance(row, 0) * (values_[a.index].row(i) - values_[a.index].row(j));
       a_bar.row(i) += part;
       a_bar.row(j) -= part;
     }

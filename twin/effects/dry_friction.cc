@@ -47,7 +47,9 @@ class DryFrictionForce : public SpringEffectForce {
 class DryFriction : public Effect {
  public:
   std::string name() const override { return "dry_friction"; }
-  std::vector<EffectParameter> parameters() const override { return {{"slip_strain", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}}; }
+  std::vector<EffectParameter> parameters() const override {
+    return {{"slip_strain", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};
+  }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Constant(1, 1e-3), Eigen::VectorXd::Constant(1, 0.02)};
   }

@@ -52,10 +52,14 @@ class Tether : public Effect {
  public:
   std::string name() const override { return "tether"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"stiffness_n_per_m", 0, 1e4, 1, 1, EffectParameter::Spacing::kLogarithmic}, {"damping_n_s_per_m", 0, 100, 0.1},
-            {"place_x_m", -100, 100, 0.05},   {"place_y_m", -100, 100, 0.05},
-            {"place_z_m", -100, 100, 0.05},   {"anchor_x_m", -100, 100, 0.05},
-            {"anchor_y_m", -100, 100, 0.05},  {"anchor_z_m", -100, 100, 0.05}};
+    return {{"stiffness_n_per_m", 0, 1e4, 1, 1, EffectParameter::Spacing::kLogarithmic},
+            {"damping_n_s_per_m", 0, 100, 0.1},
+            {"place_x_m", -100, 100, 0.05},
+            {"place_y_m", -100, 100, 0.05},
+            {"place_z_m", -100, 100, 0.05},
+            {"anchor_x_m", -100, 100, 0.05},
+            {"anchor_y_m", -100, 100, 0.05},
+            {"anchor_z_m", -100, 100, 0.05}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const override {
     constexpr int kPlaces = 12;
