@@ -7,6 +7,7 @@
 #include <random>
 
 #include "twin/neighbours.h"
+#include "twin/uniform.h"
 
 namespace physpring {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kMass = 0.1;                  // kg
 
 Points Scatter(int nodes) {
   std::mt19937_64 generator(1);
-  const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
+  const auto uniform = [&] { return Uniform(&generator); };
   Points points(3, nodes);
   for (int i = 0; i < nodes; ++i) {
     const double x = kLength * uniform();

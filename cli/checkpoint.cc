@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "twin/atomic_file.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -101,8 +100,7 @@ Checkpoint::Checkpoint(const std::string& path, const FitData& data, const Train
   labels_.seed = options.seed;
 }
 
-void Checkpoint::ExpectWritable(bool force) const {
-  ExpectFileWritable(path_);
+void Checkpoint::ExpectReplaceable(bool force) const {
   if (!Exists(path_)) return;
   Twin twin;
   try {

@@ -25,9 +25,9 @@ class Checkpoint {
   Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
              const std::string& from);
 
-  // Throws Error if a twin could not be written to the path, or if there is a file that would be
-  // overwritten without `force`.
-  void ExpectWritable(bool force) const;
+  // Throws Error if there is a file that is no twin, or a twin that would be overwritten without
+  // `force`.
+  void ExpectReplaceable(bool force) const;
 
   // Leads `fitter` to where the file left it; does nothing if there is no file. Throws Error if the
   // file is no twin, or one of other recordings or other options (naming the first that differs).

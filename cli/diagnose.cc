@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/diagnosis_report.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
+#include "cli/output_files.h"
 #include "cli/progress.h"
 #include "trainer/diagnosis/diagnosis.h"
 #include "trainer/fit_data.h"
@@ -31,24 +31,36 @@ struct Arguments {
   DiagnosisOptions options;
 };
 
-std::vector<Recording> ReadHeldOut(const std::vector<std::string>& arguments) {
-  std::vector<Recording> recordings;
-  if (arguments.empty()) return recordings;
-  for (const RecordingEntry& entry : ListRecordings(arguments, Role::kHeldout)) {
-    recordings.push_back(ReadRecording(entry.path));
+struct Outputs {
+  std::string report, page, twin;
+};
+
+// Before the work: makes the folder.
+Outputs MakeOutputs(const Arguments& arguments, const std::vector<RecordingEntry>& fit,
+                    const std::vector<RecordingEntry>& held_out) {
+  const std::filesystem::path folder(arguments.output);
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    throw Error(fmt::format("{}: cannot be made: {}", arguments.output, failure.message()));
   }
-  return recordings;
+  const Outputs outputs{(folder / "report.json").string(), (folder / "report.html").string(),
+                        (folder / std::filesystem::path(arguments.twin).filename()).string()};
+  std::vector<std::string> inputs{arguments.twin};
+  for (const RecordingEntry& entry : fit) inputs.push_back(entry.path);
+  for (const RecordingEntry& entry : held_out) inputs.push_back(entry.path);
+  ExpectOutputs({outputs.report, outputs.page, outputs.twin, arguments.json}, inputs);
+  return outputs;
 }
 
 void Run(const Arguments& arguments) {
   const Twin twin = ReadTwin(arguments.twin);
-  const FitData data = ReadFitData(arguments.recordings);
-  const std::vector<Recording> held_out = ReadHeldOut(arguments.held_out);
-  std::error_code failure;
-  std::filesystem::create_directories(arguments.output, failure);
-  if (failure) {
-    throw Error(fmt::format("{}: cannot be made: {}", arguments.output, failure.message()));
-  }
+  const auto fit = ListRecordings(arguments.recordings, Role::kFit);
+  const auto held_out = ListRecordings(arguments.held_out, Role::kHeldout);
+  const FitData data = ReadFitData(fit);
+  std::vector<Recording> judged;
+  for (const RecordingEntry& entry : held_out) judged.push_back(ReadRecording(entry.path));
+  const Outputs outputs = MakeOutputs(arguments, fit, held_out);
   const InterruptWatch watch;
   DiagnosisOptions options = arguments.options;
   Diagnosis diagnosis;
@@ -58,16 +70,14 @@ void Run(const Arguments& arguments) {
       if (watch.signal() != 0) throw Interrupted{watch.signal()};
       progress.Show(share, status);
     };
-    diagnosis = Diagnose(twin, data.recordings, held_out, options);
+    diagnosis = Diagnose(twin, data.recordings, judged, options);
   }
-  const std::filesystem::path folder(arguments.output);
   const std::string json = FormatDiagnosisJson(diagnosis);
-  WriteFileAtomically((folder / "report.json").string(), json);
+  WriteFileAtomically(outputs.report, json);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, json);
   const std::string name = std::filesystem::path(arguments.twin).filename().string();
-  WriteFileAtomically((folder / "report.html").string(),
-                      FormatDiagnosisPage(diagnosis, "Diagnosis of " + name));
-  WriteTwin(diagnosis.twin, (folder / name).string());
+  WriteFileAtomically(outputs.page, FormatDiagnosisPage(diagnosis, "Diagnosis of " + name));
+  WriteTwin(diagnosis.twin, outputs.twin);
   fmt::print("{}", FormatDiagnosisText(diagnosis));
 }
 
@@ -98,7 +108,7 @@ void AddDiagnoseCommand(CLI::App& app) {
   command->add_option("--json", arguments->json, "write report.json here, too")
       ->type_name("FILE.json");
   AddSeed(command, &arguments->options.seed, "of the bootstrap");
-  arguments->options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  arguments->options.threads = AllCores();
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");
   command->callback([arguments] { Run(*arguments); });
 }

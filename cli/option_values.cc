@@ -7,6 +7,7 @@
 #include <charconv>
 #include <limits>
 #include <optional>
+#include <thread>
 
 #include "twin/quote.h"
 
@@ -101,6 +102,8 @@ CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* nu
       ->type_name("N|auto")
       ->default_str("auto");
 }
+
+int AllCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 CLI::Option* AddThreads(CLI::App* command, int* threads, const std::string& description) {
   return command->add_option("--threads", *threads, description)

@@ -38,6 +38,9 @@ CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* 
 CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,
                              const std::string& description);
 
+// As many threads as the machine runs at once.
+int AllCores();
+
 // At most this many threads.
 CLI::Option* AddThreads(CLI::App* command, int* threads, const std::string& description);
 

@@ -12,7 +12,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/checkpoint.h"
@@ -127,25 +126,24 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
   fmt::print("\n");
 }
 
-// Every file that is read, but the output.
-std::vector<std::string> InputsOf(const Arguments& arguments) {
+// Before the work.
+void ExpectWritable(const Arguments& arguments, const std::vector<RecordingEntry>& entries) {
   std::vector<std::string> inputs;
   if (!arguments.from.empty()) inputs.push_back(arguments.from);
-  for (const RecordingEntry& entry : ListRecordings(arguments.recordings, Role::kFit)) {
-    inputs.push_back(entry.path);
-  }
-  return inputs;
+  for (const RecordingEntry& entry : entries) inputs.push_back(entry.path);
+  ExpectOutputs({arguments.output, arguments.log}, inputs);
 }
 
 void Run(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const TrainOptions options = OptionsOf(arguments);
-  const FitData data = ReadFitData(arguments.recordings);
+  const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kFit);
+  const FitData data = ReadFitData(entries);
   std::optional<Twin> dense;
   if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data);
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
-  checkpoint.ExpectWritable(arguments.resume || arguments.force);
-  ExpectOutputs({arguments.output, arguments.log}, InputsOf(arguments));
+  checkpoint.ExpectReplaceable(arguments.resume || arguments.force);
+  ExpectWritable(arguments, entries);
   const std::unique_ptr<Fitter> fitter = MakeFitter(data, options, dense);
   if (arguments.resume) checkpoint.Resume(fitter.get());
   OpenLog(arguments.log, arguments.resume);
@@ -245,7 +243,7 @@ void AddTrainCommand(CLI::App& app) {
       ->check(NotEmpty())
       ->type_name("NAME.twin.npz");
   AddFitOptions(command, arguments.get());
-  arguments->options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  arguments->options.threads = AllCores();
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");
   CLI::Option* const resume = command->add_flag("--resume", arguments->resume,
                                                 "go on from the output file, if there is one");

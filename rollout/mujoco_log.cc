@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/mujoco_log.h"
 
+#include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include <csetjmp>
@@ -55,6 +56,13 @@ std::vector<std::string> CatchMujoco(const std::function<void()>& call) {
   messages = outer;
   if (!ended) throw Error("MuJoCo: " + caught.error);
   return caught.warnings;
+}
+
+void CatchMujoco(const std::string& where, const std::function<void()>& call,
+                 std::vector<std::string>* warnings) {
+  for (const std::string& warning : CatchMujoco(call)) {
+    warnings->push_back(fmt::format("{}: {}", where, warning));
+  }
 }
 
 std::string OneLine(const std::string& message) {

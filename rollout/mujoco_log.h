@@ -15,6 +15,10 @@ namespace physpring {
 // longjmp, so `call` must not hold objects with destructors.
 std::vector<std::string> CatchMujoco(const std::function<void()>& call);
 
+// The same; the warnings go to `warnings`, each one after "where: ".
+void CatchMujoco(const std::string& where, const std::function<void()>& call,
+                 std::vector<std::string>* warnings);
+
 // `message` on one line: line breaks become "; ".
 std::string OneLine(const std::string& message);
 

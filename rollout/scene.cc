@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/scene.h"
 
-#include <fmt/format.h>
-
 #include <array>
 
 #include "rollout/mujoco_log.h"
@@ -13,10 +11,9 @@ namespace physpring {
 ModelPtr LoadScene(const std::string& path, std::vector<std::string>* warnings) {
   std::array<char, 1024> message{};
   mjModel* model = nullptr;
-  for (const std::string& warning : CatchMujoco(
-           [&] { model = mj_loadXML(path.c_str(), nullptr, message.data(), message.size()); })) {
-    warnings->push_back(fmt::format("{}: {}", path, warning));
-  }
+  CatchMujoco(
+      path, [&] { model = mj_loadXML(path.c_str(), nullptr, message.data(), message.size()); },
+      warnings);
   if (!model) throw Error(path + ": " + OneLine(message.data()));
   return ModelPtr(model);
 }

@@ -5,13 +5,10 @@
 #include <numbers>
 #include <random>
 
+#include "twin/uniform.h"
+
 namespace physpring {
 namespace {
-
-// Standard distributions differ between libraries; these do not.
-double Uniform(std::mt19937_64* random) {  // in [0, 1)
-  return static_cast<double>((*random)() >> 11) * 0x1p-53;
-}
 
 double Normal(std::mt19937_64* random) {  // Box and Muller
   const double radius = std::sqrt(-2 * std::log(1 - Uniform(random)));

@@ -26,10 +26,9 @@ using SpecPtr = std::unique_ptr<mjSpec, DeleteSpec>;
 SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings) {
   std::array<char, 1024> message{};
   mjSpec* spec = nullptr;
-  for (const std::string& warning : CatchMujoco(
-           [&] { spec = mj_parseXML(path.c_str(), nullptr, message.data(), message.size()); })) {
-    warnings->push_back(fmt::format("{}: {}", path, warning));
-  }
+  CatchMujoco(
+      path, [&] { spec = mj_parseXML(path.c_str(), nullptr, message.data(), message.size()); },
+      warnings);
   if (!spec) throw Error(path + ": " + OneLine(message.data()));
   return SpecPtr(spec);
 }
@@ -62,9 +61,8 @@ void Attach(const Pose& pose, const std::string& file, mjSpec* level, mjSpec* sc
 
 ModelPtr Compile(const std::string& file, mjSpec* scene, std::vector<std::string>* warnings) {
   mjModel* model = nullptr;
-  for (const std::string& warning : CatchMujoco([&] { model = mj_compile(scene, nullptr); })) {
-    warnings->push_back(fmt::format("{}: {}", file, warning));
-  }
+  CatchMujoco(
+      file, [&] { model = mj_compile(scene, nullptr); }, warnings);
   if (model) return ModelPtr(model);
   const std::string last = warnings->empty() ? "" : "; " + warnings->back();
   throw Error(fmt::format("{}: {}{}", file, OneLine(mjs_getError(scene)), last));

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <random>
 
+#include "twin/uniform.h"
+
 namespace physpring {
 namespace {
 
@@ -46,15 +48,13 @@ class NormalSource {
   Eigen::VectorXd Vector(Eigen::Index size) {
     Eigen::VectorXd z(size);
     for (double& value : z) {
-      const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
-      value = radius * std::cos(2 * std::numbers::pi * Uniform());
+      const double radius = std::sqrt(-2 * std::log(1 - Uniform(&generator_)));
+      value = radius * std::cos(2 * std::numbers::pi * Uniform(&generator_));
     }
     return z;
   }
 
  private:
-  double Uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }  // in [0, 1)
-
   std::mt19937_64 generator_;
 };
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "twin/dataset.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -30,8 +29,7 @@ void ExpectSameObject(const std::string& path, const Recording& recording,
 
 }  // namespace
 
-FitData ReadFitData(const std::vector<std::string>& arguments) {
-  const std::vector<RecordingEntry> entries = ListRecordings(arguments, Role::kFit);
+FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
   FitData data;
   for (const RecordingEntry& entry : entries) {
     data.recordings.push_back(ReadRecording(entry.path));

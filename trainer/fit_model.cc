@@ -125,7 +125,6 @@ TrackProblem::Options FollowOptions(const Recording& recording, const Candidate&
   problem.rollout.single_precision = options.single_precision;
   problem.rollout.controller_velocity = candidate.controller_velocity;
   problem.rollout.substeps = options.substeps;
-  problem.safety = kStepSafety;
   problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / recording.fps));
   // contacts make residuals jump: differences are then taken over longer steps
   problem.difference = recording.ground ? 1e-3 : 1e-5;

@@ -54,7 +54,6 @@ LiftedMotion::Options LevelFit::MotionOptions(int threads) const {
   motion.rollout.single_precision = options_.single_precision;
   motion.rollout.controller_velocity = twin_.controller_velocity;
   motion.rollout.substeps = options_.substeps;
-  motion.safety = kStepSafety;
   motion.most_substeps = most_substeps_;
   motion.threads = threads;
   return motion;

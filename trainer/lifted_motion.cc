@@ -6,7 +6,6 @@
 
 #include "trainer/parallel.h"
 #include "twin/hierarchy.h"
-#include "twin/stability.h"
 
 namespace physpring {
 namespace {

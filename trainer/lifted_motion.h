@@ -12,6 +12,7 @@
 
 #include "trainer/rollout.h"
 #include "twin/lift.h"
+#include "twin/stability.h"
 #include "twin/twin.h"
 
 namespace physpring {
@@ -19,9 +20,9 @@ namespace physpring {
 class LiftedMotion {
  public:
   struct Options {
-    RolloutOptions rollout;    // substeps: 0 = from the stability bound
-    double safety = 0.7;       // sub-step as a part of the largest stable one
-    int most_substeps = 2000;  // a frame; a stiffer system cannot be rolled out
+    RolloutOptions rollout;       // substeps: 0 = from the stability bound
+    double safety = kStepSafety;  // sub-step as a part of the largest stable one
+    int most_substeps = 2000;     // a frame; a stiffer system cannot be rolled out
     int threads = 1;
   };
 

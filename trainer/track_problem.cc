@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "trainer/parallel.h"
-#include "twin/stability.h"
 
 namespace physpring {
 namespace {

@@ -10,16 +10,17 @@
 #include "trainer/gauss_newton.h"
 #include "trainer/parameters.h"
 #include "trainer/rollout.h"
+#include "twin/stability.h"
 
 namespace physpring {
 
 class TrackProblem : public LeastSquares {
  public:
   struct Options {
-    RolloutOptions rollout;    // substeps: 0 = from the stability bound
-    double safety = 0.7;       // sub-step as a part of the largest stable one
-    int most_substeps = 2000;  // a frame; a stiffer system cannot be evaluated
-    double difference = 1e-5;  // longest entry of the step of J v; longer where contacts jump
+    RolloutOptions rollout;       // substeps: 0 = from the stability bound
+    double safety = kStepSafety;  // sub-step as a part of the largest stable one
+    int most_substeps = 2000;     // a frame; a stiffer system cannot be evaluated
+    double difference = 1e-5;     // longest entry of the step of J v; longer where contacts jump
     int threads = 1;
   };
 

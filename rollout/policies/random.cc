@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "twin/uniform.h"
+
 namespace physpring {
 namespace {
 
@@ -25,16 +27,16 @@ class RandomPolicy : public Policy {
   }
 
  private:
-  double Uniform() { return 2 * static_cast<double>(random_() >> 11) * 0x1p-53 - 1; }
+  double Either() { return 2 * Uniform(&random_) - 1; }  // in [-1, 1)
 
   void ChooseGoal() {
     goal_ = home_;
     if (kind_ == RobotKind::kJoints) {
-      for (double& joint : goal_) joint += kJointReach * Uniform();
+      for (double& joint : goal_) joint += kJointReach * Either();
       return;
     }
-    for (double& coordinate : goal_.head<3>()) coordinate += kReach * Uniform();
-    goal_[7] = (Uniform() + 1) / 2;
+    for (double& coordinate : goal_.head<3>()) coordinate += kReach * Either();
+    goal_[7] = (Either() + 1) / 2;
   }
 
   RobotKind kind_;

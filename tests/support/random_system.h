@@ -8,6 +8,7 @@
 
 #include "twin/points.h"
 #include "twin/spring_mass_system.h"
+#include "twin/uniform.h"
 
 namespace physpring {
 
@@ -15,9 +16,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}
   // Uniform in [low, high).
-  double operator()(double low, double high) {
-    return low + (high - low) * static_cast<double>(generator_() >> 11) * 0x1p-53;
-  }
+  double operator()(double low, double high) { return low + (high - low) * Uniform(&generator_); }
   // 3 x count, each entry uniform in [-size, size).
   Points Box(int count, double size) {
     Points points(3, count);

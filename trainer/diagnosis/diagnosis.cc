@@ -192,8 +192,7 @@ std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitReco
   } catch (const Error&) {
     return {};
   }
-  fit.held = TrackOf(splits, fit.predicted, SplitRecording::Use::kHeld);
-  fit.track = {Mean(TrackOf(splits, fit.predicted, SplitRecording::Use::kFit)), Mean(fit.held)};
+  ScorePrediction(splits, &fit);
   return fit;
 }
 

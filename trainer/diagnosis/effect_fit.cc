@@ -57,6 +57,12 @@ GaussNewtonOptions Prior(const EffectModel& model) {
 
 }  // namespace
 
+void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* fit) {
+  fit->held = TrackOf(recordings, fit->predicted, SplitRecording::Use::kHeld);
+  fit->track = {Mean(TrackOf(recordings, fit->predicted, SplitRecording::Use::kFit)),
+                Mean(fit->held)};
+}
+
 EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
                              std::vector<SplitRecording> recordings, int threads)
     : bodies_(std::move(bodies)),
@@ -143,9 +149,7 @@ bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
   if (!predicted) return false;
   fit->system = problem->model().Apply(x);
   fit->predicted = std::move(*predicted);
-  fit->held = TrackOf(recordings_, fit->predicted, SplitRecording::Use::kHeld);
-  fit->track = {Mean(TrackOf(recordings_, fit->predicted, SplitRecording::Use::kFit)),
-                Mean(fit->held)};
+  ScorePrediction(recordings_, fit);
   return true;
 }
 

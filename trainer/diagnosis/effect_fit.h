@@ -33,6 +33,9 @@ struct EffectFit {
   TrackPair track{};
 };
 
+// Sets `held` and `track` from what the fit predicted.
+void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* fit);
+
 class EffectFitting {
  public:
   enum class Horizon { kShort, kAll };  // the first part of the fit frames, or all

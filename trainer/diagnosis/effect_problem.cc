@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "trainer/parallel.h"
-#include "twin/stability.h"
 
 namespace physpring {
 namespace {

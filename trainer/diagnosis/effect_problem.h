@@ -13,6 +13,7 @@
 #include "trainer/diagnosis/split_recording.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/rollout.h"
+#include "twin/stability.h"
 
 namespace physpring {
 
@@ -24,9 +25,9 @@ class EffectProblem : public LeastSquares {
  public:
   struct Options {
     bool controller_velocity = true;
-    double safety = 0.7;       // sub-step as a part of the largest stable one
-    double most_rate = 10000;  // sub-steps a second; a stiffer system cannot be evaluated
-    double difference = 1e-5;  // longest entry of the step of J v; longer where contacts jump
+    double safety = kStepSafety;  // sub-step as a part of the largest stable one
+    double most_rate = 10000;     // sub-steps a second; a stiffer system cannot be evaluated
+    double difference = 1e-5;     // longest entry of the step of J v; longer where contacts jump
     int threads = 1;
   };
 

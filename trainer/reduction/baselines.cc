@@ -8,12 +8,10 @@
 #include <set>
 
 #include "twin/neighbours.h"
+#include "twin/uniform.h"
 
 namespace physpring {
 namespace {
-
-// Uniform in [0, 1), the same with every standard library.
-double Uniform(std::mt19937_64* random) { return static_cast<double>((*random)() >> 11) * 0x1p-53; }
 
 // All nodes in random order (Fisher-Yates).
 std::vector<int> Shuffled(int nodes, std::mt19937_64* random) {
