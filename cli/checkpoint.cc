@@ -57,6 +57,9 @@ std::string OptionsJson(const TrainOptions& options, const std::string& from) {
   json["controller_velocity"] = !options.controller_velocity   ? "auto"
                                 : *options.controller_velocity ? "on"
                                                                : "off";
+  json["cone"] = !options.cone                              ? "auto"
+                 : *options.cone == FrictionCone::kElliptic ? "elliptic"
+                                                            : "pyramidal";
   json["self_collision"] = options.self_collision ? "on" : "off";
   return json.dump();
 }

@@ -70,8 +70,9 @@ std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
                         range.median, range.most, quantity.unit);
   }
   const ContactCoefficients& contact = system.contact;
-  text += fmt::format("  drag {:.4g} 1/s; contact: restitution {:.3g}, friction {:.3g}; ",
-                      system.drag, contact.restitution, contact.friction);
+  text += fmt::format("  drag {:.4g} 1/s; contact: restitution {:.3g}, friction {:.3g}{}; ",
+                      system.drag, contact.restitution, contact.friction,
+                      contact.cone == FrictionCone::kElliptic ? "" : " (pyramidal cone)");
   text += contact.collision_distance > 0
               ? fmt::format("particles collide at {:.3g} m: restitution {:.3g}, friction {:.3g}\n",
                             contact.collision_distance, contact.object_restitution,
@@ -94,11 +95,13 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
     json[quantity.key] = {{"min", range.least}, {"median", range.median}, {"max", range.most}};
   }
   json["drag_1_s"] = system.drag;
-  json["contact"] = {{"restitution", system.contact.restitution},
-                     {"friction", system.contact.friction},
-                     {"object_restitution", system.contact.object_restitution},
-                     {"object_friction", system.contact.object_friction},
-                     {"collision_distance_m", system.contact.collision_distance}};
+  json["contact"] = {
+      {"restitution", system.contact.restitution},
+      {"friction", system.contact.friction},
+      {"cone", system.contact.cone == FrictionCone::kElliptic ? "elliptic" : "pyramidal"},
+      {"object_restitution", system.contact.object_restitution},
+      {"object_friction", system.contact.object_friction},
+      {"collision_distance_m", system.contact.collision_distance}};
   return json;
 }
 

@@ -35,6 +35,7 @@ struct Arguments {
   std::string output, log, from;
   std::string reduction = "learned";
   std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
+  std::string cone = "auto";
   TrainOptions options;  // without what is a word above
   bool resume = false, force = false;
   double checkpoint_interval = 10;  // s
@@ -51,6 +52,10 @@ TrainOptions OptionsOf(const Arguments& arguments) {
                                                       : Optimizer::kGaussNewton;
   options.single_precision = arguments.precision == "float";
   if (arguments.velocity != "auto") options.controller_velocity = arguments.velocity == "on";
+  if (arguments.cone != "auto") {
+    options.cone =
+        arguments.cone == "elliptic" ? FrictionCone::kElliptic : FrictionCone::kPyramidal;
+  }
   options.reduction = std::map<std::string, Reduction>{{"learned", Reduction::kLearned},
                                                        {"random", Reduction::kRandom},
                                                        {"gramian", Reduction::kGramian},
@@ -222,6 +227,9 @@ void AddFitOptions(CLI::App* command, Arguments* arguments) {
   AddChoice(command, "--controller-velocity", &arguments->velocity, {"auto", "on", "off"},
             "whether dashpots feel the controllers' velocity; auto: whatever "
             "predicts better (full), no (two-stage)");
+  AddChoice(command, "--cone", &arguments->cone, {"auto", "elliptic", "pyramidal"},
+            "of friction on the ground: Coulomb's, or MuJoCo's default; auto: whatever predicts "
+            "better (full), elliptic (two-stage)");
   command->add_flag("--self-collision", options.self_collision,
                     "let particles collide with each other (two-stage)");
   AddSeed(command, &options.seed, "of random numbers");

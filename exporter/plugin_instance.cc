@@ -53,6 +53,7 @@ void AddContactKeys(const LevelPlan& plan, XmlElement* instance) {
   AddConfig(instance, "friction", Number(contact.friction));
   AddConfig(instance, "object_restitution", Number(contact.object_restitution));
   AddConfig(instance, "object_friction", Number(contact.object_friction));
+  if (contact.cone == FrictionCone::kPyramidal) AddConfig(instance, "cone", "pyramidal");
   AddConfig(instance, "collision_distance", Number(contact.collision_distance));
   AddConfig(instance, "contact_radius", Compact(plan.system().contact_radius));
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -71,6 +72,16 @@ bool Attributes::Flag(const char* name, bool otherwise) const {
   const double value = Number(name, otherwise ? 1 : 0);
   if (value != 0 && value != 1) Fail(name, fmt::format("is {}, expected 0 or 1", value));
   return value == 1;
+}
+
+std::string_view Attributes::Word(const char* name,
+                                  std::initializer_list<std::string_view> words) const {
+  if (!Has(name)) return *words.begin();
+  const auto word = std::find(words.begin(), words.end(), Text(name));
+  if (word == words.end()) {
+    Fail(name, fmt::format("is {}, expected {}", Quote(Text(name)), fmt::join(words, " or ")));
+  }
+  return *word;
 }
 
 std::vector<int> Attributes::Integers(const char* name) const {

@@ -7,7 +7,9 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace physpring {
@@ -27,6 +29,8 @@ class Attributes {
   // is what they return.
   double Number(const char* name, double otherwise) const;
   bool Flag(const char* name, bool otherwise) const;  // 0 or 1
+  // One of `words`; the first one if it is not given.
+  std::string_view Word(const char* name, std::initializer_list<std::string_view> words) const;
   std::vector<int> Integers(const char* name) const;  // any number of them
   // `count` values; a single one stands for all.
   Eigen::VectorXd Each(const char* name, Eigen::Index count) const;

@@ -33,6 +33,7 @@ const std::vector<const char*>& LevelContact::AttributeNames() {
                                                  "object_restitution",
                                                  "object_friction",
                                                  "collision_distance",
+                                                 "cone",
                                                  "contact_radius"};
   return names;
 }

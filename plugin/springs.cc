@@ -68,6 +68,7 @@ const std::vector<const char*>& Springs::AttributeNames() {
                                                  "object_restitution",
                                                  "object_friction",
                                                  "collision_distance",
+                                                 "cone",
                                                  "contact_radius"};
   return names;
 }

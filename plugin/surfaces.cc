@@ -39,7 +39,7 @@ int InstanceOfNode(const mjModel* model, int body) {
 Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
     : instance_(instance), node_of_body_(model->nbody, -1), level_(&level) {
   const ContactCoefficients& c = level.system.contact;
-  laws_.surface = {c.restitution, c.friction};
+  laws_.surface = {c.restitution, c.friction, c.cone};
   laws_.object = {c.object_restitution, c.object_friction};
   const std::vector<int>& nodes = level.bodies.nodes;
   for (int body = 1; body < model->nbody; ++body) {

@@ -56,8 +56,9 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
 }  // namespace
 
 std::string Candidate::Label() const {
-  return fmt::format("{} neighbours{}", neighbours,
-                     controller_velocity ? "" : ", controllers without velocity");
+  return fmt::format("{} neighbours{}{}", neighbours,
+                     controller_velocity ? "" : ", controllers without velocity",
+                     cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
 }
 
 std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions& options) {
@@ -65,6 +66,9 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
   std::vector<bool> velocities = {true, false};
   if (options.controller_velocity) velocities = {*options.controller_velocity};
   if (recording.controller_count() == 0) velocities.resize(1);
+  std::vector<FrictionCone> cones = {FrictionCone::kElliptic};
+  if (recording.ground) cones.push_back(FrictionCone::kPyramidal);
+  if (options.cone) cones = {*options.cone};
   std::vector<Candidate> candidates;
   double last_radius = 0;
   for (int count : NeighbourCounts(recording, options)) {
@@ -72,7 +76,9 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
     const double radius = rod ? 0 : SpringRadius(particles, count);
     if (!rod && radius < 1.02 * last_radius) continue;  // the same shells again
     last_radius = radius;
-    for (bool velocity : velocities) candidates.push_back({count, radius, velocity});
+    for (FrictionCone cone : cones) {
+      for (bool velocity : velocities) candidates.push_back({count, radius, velocity, cone});
+    }
   }
   return candidates;
 }
@@ -88,6 +94,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
     topology.controller_max_neighbours *= kMostPerWanted;
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
+  system.contact.cone = candidate.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   return system;
 }

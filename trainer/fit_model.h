@@ -15,11 +15,13 @@
 
 namespace physpring {
 
-// One model: which particles are joined, and whether dashpots feel the controllers' velocity.
+// One model: which particles are joined, whether dashpots feel the controllers' velocity, and the
+// cone of friction.
 struct Candidate {
   int neighbours = 0;  // of an inner particle, about
   double radius = 0;   // m, that gives them (not used along rods)
   bool controller_velocity = true;
+  FrictionCone cone = FrictionCone::kElliptic;
 
   std::string Label() const;
 };

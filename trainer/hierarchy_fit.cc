@@ -56,7 +56,8 @@ void StoreParameters(const std::string& name, const SpringMassSystem& system, St
 void LoadParameters(const std::string& name, const StateArrays& arrays, SpringMassSystem* system) {
   const Eigen::VectorXd scalars = LoadVector(arrays, name + "/scalars", 6);
   system->drag = scalars[0];
-  system->contact = {scalars[1], scalars[2], scalars[3], scalars[4], scalars[5]};
+  system->contact = {scalars[1], scalars[2], scalars[3],
+                     scalars[4], scalars[5], system->contact.cone};
   const int springs = system->spring_count();
   system->stiffness = LoadVector(arrays, name + "/stiffness", springs);
   system->rest_length = LoadVector(arrays, name + "/rest_length", springs);

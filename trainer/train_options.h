@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "twin/friction_cone.h"
+
 namespace physpring {
 
 struct TrainOptions {
@@ -23,6 +25,8 @@ struct TrainOptions {
   // Whether dashpots feel the controllers' velocity; empty: whatever predicts better (full), no
   // (two-stage, as PhysTwin).
   std::optional<bool> controller_velocity;
+  // Of friction on the ground; empty: whatever predicts better (full), elliptic (two-stage).
+  std::optional<FrictionCone> cone;
   bool self_collision = false;  // particles collide with each other (two-stage only)
   int threads = 1;
   std::uint64_t seed = 0;

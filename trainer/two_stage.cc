@@ -56,8 +56,10 @@ TwoStageFit::TwoStageFit(FitData data, const TrainOptions& options)
 }
 
 SpringMassSystem TwoStageFit::SystemAt(const Eigen::VectorXd& point) const {
-  return MakePhysTwinSystem(data_.recordings[0], FromUnitCube(point, length_scale_),
-                            options_.self_collision);
+  SpringMassSystem system = MakePhysTwinSystem(
+      data_.recordings[0], FromUnitCube(point, length_scale_), options_.self_collision);
+  if (options_.cone) system.contact.cone = *options_.cone;
+  return system;
 }
 
 int TwoStageFit::Substeps(const SpringMassSystem& system) const {

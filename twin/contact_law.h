@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contact law: what an impact makes of a relative velocity. With unit normal n, restitution e
-// and Coulomb friction mu,
-//   u_n = (u . n) n,   u_t = u - u_n,   u' = -e u_n + a u_t,
-//   a = max(0, 1 - mu (1 + e) |u_n| / |u_t|)
-// (PhysTwin's rule; its shift of the position to the time of impact is left out, so that MuJoCo can
-// follow). It changes velocities only, and is applied while bodies approach (u . n < -kApproach).
-// Shared by the trainer's simulator and the MuJoCo plugin.
+// and friction mu,
+//   u_n = (u . n) n,   u_t = u - u_n,   u' = -e u_n + Slide(u_t, mu (1 + e) |u_n|)
+// (PhysTwin's rule with Coulomb's cone, see friction_cone.h; its shift of the position to the time
+// of impact is left out, so that MuJoCo can follow). It changes velocities only, and is applied
+// while bodies approach (u . n < -kApproach). Shared by the trainer's simulator and the MuJoCo
+// plugin.
 #ifndef PHYSPRING_TWIN_CONTACT_LAW_H_
 #define PHYSPRING_TWIN_CONTACT_LAW_H_
 
 #include <Eigen/Core>
-#include <algorithm>
+
+#include "twin/friction_cone.h"
 
 namespace physpring {
 
 // Approach slower than this is no impact, m/s.
 inline constexpr double kApproach = 1e-4;
-// Sliding slower than this has no direction, m/s.
-inline constexpr double kSliding = 1e-6;
 
 // Restitution and friction of one kind of contact.
 template <class Real>
 struct ContactPair {
   Real restitution = 0;
   Real friction = 0;
+  FrictionCone cone = FrictionCone::kElliptic;
 };
 
 // Relative velocity after the impact. Needs |n| = 1 and u . n < 0.
@@ -32,9 +32,8 @@ Eigen::Matrix<Real, 3, 1> Impact(const Eigen::Matrix<Real, 3, 1>& u,
                                  const Eigen::Matrix<Real, 3, 1>& n, const ContactPair<Real>& law) {
   const Real normal = u.dot(n);
   const Eigen::Matrix<Real, 3, 1> tangential = u - normal * n;
-  const Real sliding = std::max(tangential.norm(), Real(kSliding));
-  const Real kept = std::max(Real(0), 1 + law.friction * (1 + law.restitution) * normal / sliding);
-  return -law.restitution * normal * n + kept * tangential;
+  const Real limit = -law.friction * (1 + law.restitution) * normal;
+  return -law.restitution * normal * n + Slide(law.cone, tangential, n, limit);
 }
 
 // Adjoint of Impact: given bar = d loss / d u', adds to the derivatives with respect to u, n and
@@ -47,26 +46,19 @@ void ImpactAdjoint(const Eigen::Matrix<Real, 3, 1>& u, const Eigen::Matrix<Real,
   using Vector = Eigen::Matrix<Real, 3, 1>;
   const Real normal = u.dot(n);
   const Vector tangential = u - normal * n;
-  const Real norm = tangential.norm();
-  const Real sliding = std::max(norm, Real(kSliding));
-  const Real ratio = normal / sliding;  // <= 0
-  const Real kept = std::max(Real(0), 1 + law.friction * (1 + law.restitution) * ratio);
+  const Real limit = -law.friction * (1 + law.restitution) * normal;
 
-  // forward: u' = -e normal n + kept tangential
+  // forward: u' = -e normal n + Slide(tangential, n, limit)
   Real normal_bar = -law.restitution * bar.dot(n);
-  Vector tangential_bar = kept * bar;
   *n_bar += -law.restitution * normal * bar;
   law_bar->restitution += -normal * bar.dot(n);
-  if (kept > 0) {
-    // forward: kept = 1 + mu (1 + e) normal / sliding
-    const Real kept_bar = bar.dot(tangential);
-    law_bar->friction += kept_bar * (1 + law.restitution) * ratio;
-    law_bar->restitution += kept_bar * law.friction * ratio;
-    const Real factor = law.friction * (1 + law.restitution) * kept_bar / sliding;
-    normal_bar += factor;
-    // forward: sliding = |tangential|
-    if (norm > Real(kSliding)) tangential_bar -= factor * ratio / norm * tangential;
-  }
+  Vector tangential_bar = Vector::Zero();
+  Real limit_bar = 0;
+  SlideAdjoint(law.cone, tangential, n, limit, bar, &tangential_bar, n_bar, &limit_bar);
+  // forward: limit = -mu (1 + e) normal
+  law_bar->friction += -limit_bar * (1 + law.restitution) * normal;
+  law_bar->restitution += -limit_bar * law.friction * normal;
+  normal_bar -= limit_bar * law.friction * (1 + law.restitution);
   // forward: tangential = u - normal n
   *u_bar += tangential_bar;
   normal_bar -= tangential_bar.dot(n);

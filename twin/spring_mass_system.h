@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "twin/effects/effect_values.h"
+#include "twin/friction_cone.h"
 #include "twin/points.h"
 
 namespace physpring {
@@ -22,6 +23,7 @@ struct ContactCoefficients {
   double object_restitution = 0.7;  // e between particles
   double object_friction = 0.3;     // mu between particles
   double collision_distance = 0;    // m, between particles; 0 = particles do not collide
+  FrictionCone cone = FrictionCone::kElliptic;  // against ground and geoms
 };
 
 struct SpringMassSystem {

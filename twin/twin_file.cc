@@ -24,6 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "physpring twin";
 constexpr int kVersion = 1;
 constexpr const char* kStatePrefix = "train/";
+constexpr const char* kPyramidal = "pyramidal";  // `cone`, which is absent where it is elliptic
 
 // Visits every number of a level that is a scalar, under its name in the file.
 template <typename Level, typename Visitor>
@@ -68,6 +69,9 @@ void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) 
   }
   if (!system.effects.empty()) {
     arrays[prefix + "effects"] = NpzArray::Text(EffectsToJson(system.effects));
+  }
+  if (system.contact.cone == FrictionCone::kPyramidal) {
+    arrays[prefix + "cone"] = NpzArray::Text(kPyramidal);
   }
   VisitScalars(level, [&](const char* name, const double& value) {
     arrays[prefix + name] = NpzArray::Doubles({}, &value);
@@ -201,6 +205,13 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
   const std::vector<int> ends = fields.Ints(prefix + "springs", {"springs", "2"});
   for (std::size_t i = 0; i < ends.size(); i += 2) {
     level.system.springs.push_back({ends[i], ends[i + 1]});
+  }
+  if (fields.Has(prefix + "cone")) {
+    const std::string cone = fields.Text(prefix + "cone");
+    if (cone != kPyramidal) {
+      fields.Fail(prefix + "cone", fmt::format("holds {}, expected {}", Quote(cone), kPyramidal));
+    }
+    level.system.contact.cone = FrictionCone::kPyramidal;
   }
   if (fields.Has(prefix + "effects")) {
     level.system.effects =

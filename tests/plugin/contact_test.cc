@@ -49,8 +49,10 @@ LevelScene ThrowInMujoco(const Throw& thrown, bool plugin_springs, int substeps)
   return scene;
 }
 
-void ExpectMotionOfSimulator(bool plugin_springs, int substeps) {
-  const Throw thrown;
+void ExpectMotionOfSimulator(bool plugin_springs, int substeps,
+                             FrictionCone cone = FrictionCone::kElliptic) {
+  Throw thrown;
+  thrown.system.contact.cone = cone;
   Simulation simulation = ThrowInSimulator(thrown, substeps);
   LevelScene scene = ThrowInMujoco(thrown, plugin_springs, substeps);
   simulation.Advance(200 / substeps);
@@ -63,6 +65,10 @@ void ExpectMotionOfSimulator(bool plugin_springs, int substeps) {
 TEST(Contact, FloorIsThatOfTheSimulator) { ExpectMotionOfSimulator(true, 1); }
 TEST(Contact, FloorWithSubstepsIsThatOfTheSimulator) { ExpectMotionOfSimulator(true, 8); }
 TEST(Contact, FloorUnderTendonsIsThatOfTheSimulator) { ExpectMotionOfSimulator(false, 1); }
+
+TEST(Contact, PyramidalFrictionIsThatOfTheSimulator) {
+  ExpectMotionOfSimulator(true, 8, FrictionCone::kPyramidal);
+}
 
 TEST(Contact, StaysNearTheSimulatorFor100Frames) {
   const Throw thrown;

@@ -64,6 +64,8 @@ TEST(Messages, NameAttributeAndValue) {
       {"friction", "-1", "friction is -1, expected 0 to 2"},
       {"object_restitution", "2", "object_restitution is 2, expected 0 to 1"},
       {"object_friction", "3", "object_friction is 3, expected 0 to 2"},
+      {"cone", "round", "attribute 'cone' is 'round', expected elliptic or pyramidal"},
+      {"cone", "elliptic", ""},
       {"collision_distance", "-1", "collision_distance is -1, expected 0 or more"},
       {"contact_radius", "1 2 3", "attribute 'contact_radius' has 3 values, expected 1 or 2"},
   };

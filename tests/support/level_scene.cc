@@ -82,6 +82,7 @@ Config Attributes(const SpringMassSystem& system, const LevelSceneOptions& optio
     Set("friction", fmt::to_string(contact.friction), &config);
     Set("object_restitution", fmt::to_string(contact.object_restitution), &config);
     Set("object_friction", fmt::to_string(contact.object_friction), &config);
+    if (contact.cone == FrictionCone::kPyramidal) Set("cone", "pyramidal", &config);
     Set("collision_distance", fmt::to_string(contact.collision_distance), &config);
     Set("contact_radius", Join(system.contact_radius), &config);
   }

@@ -32,6 +32,24 @@ TEST(ContactLaw, FrictionStopsButDoesNotTurnTheSliding) {
   EXPECT_EQ(after, Vector3d(0, 0, 0));
 }
 
+TEST(ContactLaw, ThePyramidTakesTheFasterTangentFirst) {
+  const auto after = [](const Vector3d& sliding, double friction) {
+    // normal impulse a mass (1 + e) |u_n| = 1
+    return Impact<double>(sliding - kUp, kUp, {0, friction, FrictionCone::kPyramidal});
+  };
+  EXPECT_NEAR((after({-1, 0.25, 0}, 0.5) - Vector3d(-0.5, 0.25, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR((after({0.25, 1, 0}, 1) - Vector3d(0.125, 0.125, 0)).norm(), 0, 1e-15);
+  EXPECT_EQ(after({0.5, -1, 0}, 1.5), Vector3d(0, 0, 0));
+  EXPECT_EQ(after({0.5, -1, 0}, 0), Vector3d(0.5, -1, 0));
+}
+
+// On a wall with |n_y| >= 0.5 the tangents are z and n x z.
+TEST(ContactLaw, ThePyramidStandsOnWallsAsMujocosDoes) {
+  const Vector3d after =
+      Impact<double>({0.25, -1, 1}, Vector3d::UnitY(), {0, 0.5, FrictionCone::kPyramidal});
+  EXPECT_NEAR((after - Vector3d(0.25, 0, 0.5)).norm(), 0, 1e-15);
+}
+
 TEST(ContactLaw, NoFrictionKeepsTheSliding) {
   const Vector3d after = Impact<double>({3, 4, -2}, kUp, {.restitution = 0, .friction = 0});
   EXPECT_EQ(after, Vector3d(3, 4, 0));
@@ -43,7 +61,9 @@ TEST(ContactLaw, NeverAddsEnergy) {
     const Vector3d n = random.Box(1, 1).col(0).normalized();
     Vector3d u = random.Box(1, 1).col(0);
     if (u.dot(n) > 0) u = -u;
-    const ContactPair<double> law{random(0, 1), random(0, 2)};
+    ContactPair<double> law{random(0, 1), random(0, 2)};
+    EXPECT_LE(Impact(u, n, law).norm(), u.norm() * (1 + 1e-15));
+    law.cone = FrictionCone::kPyramidal;
     EXPECT_LE(Impact(u, n, law).norm(), u.norm() * (1 + 1e-15));
   }
 }
@@ -78,6 +98,19 @@ const Vector3d kTilted = Vector3d(1, 2, 3).normalized();
 TEST(ContactLawAdjoint, MatchesDifferencesWhenSliding) {
   const GradientReport report = CheckImpact({1, -0.5, -0.6}, kTilted, {0.4, 0.3}, 1);
   EXPECT_TRUE(report.passed) << report.log;
+}
+
+// Tangential speeds 0.86 and 0.5 m/s along the tangents, u_n = -0.6 m/s.
+TEST(ContactLawAdjoint, MatchesDifferencesInEachPartOfThePyramid) {
+  const Vector3d u = -0.6 * kTilted + 0.86 * kTilted.cross(Vector3d::UnitZ()).normalized() -
+                     0.5 * kTilted.cross(kTilted.cross(Vector3d::UnitZ())).normalized();
+  for (const Vector3d& sliding : {u, Vector3d(-1.2 * kTilted - u)}) {
+    for (double friction : {0.1, 0.8, 1.9}) {  // one tangent is slowed, both are, it sticks
+      const GradientReport report =
+          CheckImpact(sliding, kTilted, {0.4, friction, FrictionCone::kPyramidal}, 1);
+      EXPECT_TRUE(report.passed) << friction << "\n" << report.log;
+    }
+  }
 }
 
 TEST(ContactLawAdjoint, MatchesDifferencesWhenSticking) {

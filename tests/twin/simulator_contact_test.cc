@@ -61,6 +61,24 @@ TEST(SimulatorContact, FrictionStopsASliderAfterCoulombsDistance) {
   }
 }
 
+// A block that starts with 1 m/s along x and 0.3 m/s along y: with a pyramidal cone all friction
+// acts along x until both velocities are equal, then half of it along each. MuJoCo's own contact
+// does the same (its default; soft, so to a few per cent).
+TEST(SimulatorContact, PyramidalFrictionAlignsTheVelocities) {
+  const double mu = 0.5, h = 1e-4;
+  SpringMassSystem block = Ball({0, 0, 0}, 0, mu);
+  block.contact.cone = FrictionCone::kPyramidal;
+  Simulation simulation(block, kTable, h, 100);  // 10 ms a frame
+  simulation.SetVelocity(Vector3d(1, 0.3, 0));
+  simulation.Advance(10);
+  EXPECT_NEAR(simulation.velocity()(0, 0), 1 - mu * 9.81 * 0.1, 1e-2);
+  EXPECT_EQ(simulation.velocity()(1, 0), 0.3);
+  simulation.Advance(10);
+  const double together = (1 + 0.3 - mu * 9.81 * 0.2) / 2;
+  EXPECT_NEAR(simulation.velocity()(0, 0), together, 1e-2);
+  EXPECT_NEAR(simulation.velocity()(1, 0), together, 1e-2);
+}
+
 // At an angle a below atan(mu) a block stays, above it runs with g (sin a - mu cos a).
 TEST(SimulatorContact, ABlockOnASlopeSlidesAboveTheAngleOfFriction) {
   const double mu = 0.5, time = 0.4;

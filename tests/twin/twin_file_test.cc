@@ -133,6 +133,17 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
   }
 }
 
+TEST_F(TwinFile, KeepsTheConeOfFriction) {
+  Twin twin = MakeTwin();
+  EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.cone, FrictionCone::kElliptic);
+  twin.levels[1].system.contact.cone = FrictionCone::kPyramidal;
+  WriteTwin(twin, path_);
+  EXPECT_EQ(ReadTwin(path_).levels[0].system.contact.cone, FrictionCone::kElliptic);
+  EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.cone, FrictionCone::kPyramidal);
+  arrays_["level0/cone"] = NpzArray::Text("round");
+  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'level0/cone' holds 'round', expected pyramidal");
+}
+
 TEST_F(TwinFile, WritesTheSameBytesAgain) {
   const std::string again = folder_.File("again.twin.npz");
   WriteTwin(ReadTwin(path_), again);

@@ -46,6 +46,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   std::vector<DiagnosisBody> bodies = {own};
   TrainOptions options;
   if (twin.order.size() == 0) options.neighbours = kNeighbours;
+  options.cone = own.base.contact.cone;
   const Recording shaped = WithShapeOf(own.base, recording);
   for (const Candidate& candidate : Candidates(shaped, options)) {
     const SpringMassSystem system = StartSystem(shaped, candidate, kStart);
