@@ -21,6 +21,7 @@ constexpr int kGaussNewtonSteps = 15;
 constexpr double kSlow = 0.99;  // a step that lowers the mean square by less gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end Gauss-Newton
 constexpr int kAdamSteps = 200;
+constexpr int kPatience = 40;           // Adam ends after so many steps in a row that gain little
 constexpr double kLearningRate = 0.03;  // of log-stiffnesses; others in proportion to their prior
 constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so much above the best
 
@@ -116,6 +117,8 @@ void FullFit::BeginAdam(bool wanted) {
   state_.rate = 1;
   state_.best = state_.x;
   state_.best_mean_square = std::numeric_limits<double>::infinity();
+  state_.gained_mean_square = std::numeric_limits<double>::infinity();
+  state_.slow = 0;
 }
 
 // One iteration of Adam on |r|^2 / variance + prior, the variance being the current mean of r^2.
@@ -136,6 +139,11 @@ void FullFit::StepAdam() {
   if (mean_square < state_.best_mean_square) {
     state_.best_mean_square = mean_square;
     state_.best = state_.x;
+  }
+  ++state_.slow;
+  if (state_.best_mean_square < kSlow * state_.gained_mean_square) {
+    state_.gained_mean_square = state_.best_mean_square;
+    state_.slow = 0;
   }
   if (r && mean_square < kAstray * state_.best_mean_square) {
     const Eigen::VectorXd gradient =
@@ -158,7 +166,8 @@ void FullFit::StepAdam() {
       "single springs: {:.3f} mm, best {:.3f}{}", Millimetres(mean_square),
       Millimetres(state_.best_mean_square),
       problem.cuts() > 0 ? fmt::format(" (adjoint cut into {} windows)", problem.cuts() + 1) : "");
-  if (++state_.iteration < AdamSteps()) return;
+  const bool stuck = state_.slow >= kPatience && options_.epochs == 0;
+  if (++state_.iteration < AdamSteps() && !stuck) return;
   state_.x = state_.best;
   state_.stage = Stage::kDone;
 }
@@ -223,8 +232,9 @@ std::map<std::string, NpzArray> FullFit::Save() const {
       StoreCounters({static_cast<int>(state_.stage), state_.iteration, state_.slow,
                      static_cast<int>(model_.factors.size()), static_cast<int>(state_.x.size()),
                      static_cast<int>(state_.adam_mean.size())});
-  Eigen::VectorXd scalars(4);
-  scalars << state_.damping, state_.mean_square, state_.rate, state_.best_mean_square;
+  Eigen::VectorXd scalars(5);
+  scalars << state_.damping, state_.mean_square, state_.rate, state_.best_mean_square,
+      state_.gained_mean_square;
   arrays["train/scalars"] = StoreVector(scalars);
   arrays["train/factors"] = StoreVector(model_.factors);
   arrays["train/x"] = StoreVector(state_.x);
@@ -240,11 +250,12 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
   state_.stage = static_cast<Stage>(counters[0]);
   state_.iteration = counters[1];
   state_.slow = counters[2];
-  const Eigen::VectorXd scalars = LoadVector(arrays, "scalars", 4);
+  const Eigen::VectorXd scalars = LoadVector(arrays, "scalars", 5);
   state_.damping = scalars[0];
   state_.mean_square = scalars[1];
   state_.rate = scalars[2];
   state_.best_mean_square = scalars[3];
+  state_.gained_mean_square = scalars[4];
   model_ = choice_.Best();
   model_.factors = LoadVector(arrays, "factors", counters[3]);
   state_.x = LoadVector(arrays, "x", counters[4]);

@@ -41,12 +41,13 @@ class FullFit : public Fitter {
   struct State {
     Stage stage = Stage::kChoose;
     int iteration = 0;  // of the stage
-    int slow = 0;       // steps of Gauss-Newton in a row that gained little
+    int slow = 0;       // steps in a row that gained little
     double damping = 0;
     double mean_square = 0;                       // of the residuals at x
     double rate = 1;                              // of Adam, relative to its schedule
     double best_mean_square = 0;                  // Adam's best ...
-    Eigen::VectorXd best;                         // ... and its x
+    double gained_mean_square = 0;                // ... when it last gained more than little
+    Eigen::VectorXd best;                         // the x of the best
     Eigen::VectorXd x;                            // common factors, then with the springs' own
     Eigen::VectorXd adam_mean, adam_mean_square;  // of the gradient
   };
