@@ -11,14 +11,9 @@
 #include <filesystem>
 
 #include "rollout/mujoco_log.h"
+#include "rollout/osmesa.h"
 #include "twin/error.h"
 #include "twin/kernel_choice.h"
-
-#ifdef __SANITIZE_ADDRESS__
-// Mesa never frees what OSMesaMakeCurrent allocates.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-const char* __lsan_default_suppressions() { return "leak:libOSMesa"; }  // NOLINT
-#endif
 
 namespace physpring {
 namespace {
@@ -83,41 +78,32 @@ Finding Plugins() {
 }
 
 // The version of OpenGL that OSMesa gives a small off-screen context, or empty.
-std::string OsMesaVersion(void* library) {
-  using Create = void* (*)(unsigned, int, int, int, void*);
-  using MakeCurrent = unsigned char (*)(void*, void*, unsigned, int, int);
-  using Destroy = void (*)(void*);
-  using GetProcAddress = void* (*)(const char*);
-  using GetString = const char* (*)(unsigned);
-  const auto create = reinterpret_cast<Create>(dlsym(library, "OSMesaCreateContextExt"));
-  const auto make_current = reinterpret_cast<MakeCurrent>(dlsym(library, "OSMesaMakeCurrent"));
-  const auto destroy = reinterpret_cast<Destroy>(dlsym(library, "OSMesaDestroyContext"));
-  const auto address = reinterpret_cast<GetProcAddress>(dlsym(library, "OSMesaGetProcAddress"));
-  if (!create || !make_current || !destroy || !address) return "";
-  const auto get_string = reinterpret_cast<GetString>(address("glGetString"));
-
-  constexpr unsigned kRgba = 0x1908, kUnsignedByte = 0x1401, kVersion = 0x1F02;
-  constexpr int kSize = 4;  // pixels
+std::string OpenGlVersion(const OsMesa& mesa) {
+  if (!mesa.complete()) return "";
+  constexpr unsigned kVersion = 0x1F02;  // GL_VERSION
+  constexpr int kSize = 4;               // pixels
+  const auto get_string = reinterpret_cast<const char* (*)(unsigned)>(mesa.find("glGetString"));
   std::array<unsigned char, 4 * kSize * kSize> pixels{};
-  void* context = create(kRgba, 24, 8, 8, nullptr);
+  void* context = mesa.create(kGlRgba, 24, 8, 8, nullptr);
   if (!context) return "";
   std::string version;
-  if (get_string && make_current(context, pixels.data(), kUnsignedByte, kSize, kSize)) {
+  if (get_string && mesa.make_current(context, pixels.data(), kGlUnsignedByte, kSize, kSize)) {
     if (const char* text = get_string(kVersion)) version = text;
   }
-  destroy(context);
+  mesa.destroy(context);
   return version;
 }
 
 Finding OffScreenGl() {
-  for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}) {
-    void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL);  // stays open: it has threads
-    if (!library) continue;
-    const std::string version = OsMesaVersion(library);
-    if (!version.empty()) return {"OSMesa", fmt::format("OpenGL {}, {}", version, name)};
-    return {"OSMesa", name, "gives no OpenGL context; pictures cannot be made"};
+  const OsMesa& mesa = FindOsMesa();
+  if (mesa.library.empty()) {
+    return {"OSMesa", "not found", "pictures cannot be made; install libosmesa6"};
   }
-  return {"OSMesa", "not found", "pictures cannot be made; install libosmesa6"};
+  const std::string version = OpenGlVersion(mesa);
+  if (version.empty()) {
+    return {"OSMesa", mesa.library, "gives no OpenGL context; pictures cannot be made"};
+  }
+  return {"OSMesa", fmt::format("OpenGL {}, {}", version, mesa.library)};
 }
 
 Finding SubstepKernel() {

@@ -44,7 +44,6 @@ std::string ObjectBody(mjSpec* level, const std::string& file) {
 // Attaches `level` to the world of `scene`, in a new frame.
 void Attach(const Pose& pose, const std::string& file, mjSpec* level, mjSpec* scene) {
   bool attached = false;
-  std::string problem;
   CatchMujoco([&] {
     mjsFrame* frame = mjs_addFrame(mjs_findBody(scene, "world"), nullptr);
     const Eigen::Quaterniond& q = pose.orientation;

@@ -110,7 +110,7 @@ std::vector<Eigen::VectorXd> CmaEs::Sample() const {
   std::vector<Eigen::VectorXd> points;
   for (int k = 0; k < population_; ++k) {
     const Eigen::VectorXd z = normal.Vector(state_.mean.size());
-    points.push_back(state_.mean + state_.step_size * (root * z));
+    points.emplace_back(state_.mean + state_.step_size * (root * z));
   }
   return points;
 }

@@ -31,7 +31,7 @@ class FullFit : public Fitter {
   std::string Status() const override { return status_; }
   std::string Part() const override;
   std::map<std::string, NpzArray> Save() const override;
-  void Load(const std::map<std::string, NpzArray>& state) override;
+  void Load(const std::map<std::string, NpzArray>& arrays) override;
   Twin Result() const override;
 
  private:

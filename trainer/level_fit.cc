@@ -69,7 +69,7 @@ Parameters LevelFit::SpringParameters() const {
 
 // The common factors and the network's corrections.
 SpringMassSystem LevelFit::CorrectedSystem(const Eigen::VectorXd& weights) const {
-  const SpringMassSystem base = CommonParameters().Apply(common_);
+  SpringMassSystem base = CommonParameters().Apply(common_);
   if (options_.network.epochs == 0) return base;
   return LevelNetwork(network_, twin_, base, weights).corrected();
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "twin/error.h"
 #include "twin/quote.h"
@@ -21,7 +22,7 @@ void DropControllers(SpringMassSystem* system) {
   const auto keep = [&](const Eigen::VectorXd& values) { return values(kept).eval(); };
   std::vector<std::array<int, 2>> springs;
   for (const int e : kept) springs.push_back(system->springs[e]);
-  system->springs = springs;
+  system->springs = std::move(springs);
   system->stiffness = keep(system->stiffness);
   system->rest_length = keep(system->rest_length);
   system->dashpot = keep(system->dashpot);

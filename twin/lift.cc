@@ -36,7 +36,7 @@ Lift::Lift(const Twin& twin, int level, const Points& particles_start)
   constexpr double kNear = 1e-6;  // m: keeps the weight of a node that is a particle finite
   for (int i = 0; i < static_cast<int>(owner.size()); ++i) {
     std::vector<std::pair<double, int>> near{{0, owner[i]}};
-    for (int node : neighbours_[owner[i]]) near.push_back({0, node});
+    for (int node : neighbours_[owner[i]]) near.emplace_back(0, node);
     for (auto& [squared, node] : near) squared = (nodes.col(node) - particles.col(i)).squaredNorm();
     std::sort(near.begin(), near.end());
     near.resize(std::min(near.size(), Anchors{}.size()));

@@ -85,10 +85,10 @@ class DictionaryParser {
 
   std::string ParseType() {
     SkipSpace();
-    if (rest_.starts_with("[")) throw Error("is a structured array, expected plain numbers");
+    if (rest_.starts_with('[')) throw Error("is a structured array, expected plain numbers");
     const std::string_view type = ParseString();
     if (BytesOfType(type) > 0) return std::string(type);
-    if (type.starts_with(">")) {
+    if (type.starts_with('>')) {
       throw Error(fmt::format("has the big-endian type {}, expected little endian", Quote(type)));
     }
     throw Error(fmt::format(

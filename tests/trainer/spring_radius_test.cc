@@ -14,8 +14,9 @@ Points Grid(int n, double spacing, double noise) {
   std::uniform_real_distribution<double> offset(-noise, noise);
   Points points(3, n * n * n);
   for (int i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d place(i % n, i / n % n, i / (n * n));
-    points.col(i) = spacing * place + Eigen::Vector3d::NullaryExpr([&] { return offset(random); });
+    const Eigen::Vector3i place(i % n, i / n % n, i / (n * n));
+    points.col(i) = spacing * place.cast<double>() +
+                    Eigen::Vector3d::NullaryExpr([&] { return offset(random); });
   }
   return points;
 }
