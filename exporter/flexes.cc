@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace physpring {
 namespace {
@@ -121,7 +122,7 @@ FlexGroups GroupSprings(const SpringMassSystem& system, int count) {
     group.stiffness = std::exp(group.stiffness / members);
     group.dashpot /= members;
   }
-  result.groups = groups;
+  result.groups = std::move(groups);
   result.rounding = MeasureRounding(system, result.groups);
   return result;
 }

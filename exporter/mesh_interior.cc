@@ -49,8 +49,8 @@ Points SampleInterior(const TriangleMesh& mesh, double spacing, const Points& ta
   std::vector<Eigen::Vector3d> inside;
   const Eigen::Array3i n = counts.cast<int>();
   for (int i = 0; i < n.prod(); ++i) {
-    const Eigen::Vector3d place(i % n[0], i / n[0] % n[1], i / (n[0] * n[1]));
-    const Eigen::Vector3d x = first + spacing * place;
+    const Eigen::Vector3i place(i % n[0], i / n[0] % n[1], i / (n[0] * n[1]));
+    const Eigen::Vector3d x = first + spacing * place.cast<double>();
     if (search.Nearest(x, 1)[0].distance < spacing / 2) continue;
     if (std::abs(WindingNumber(mesh, x)) > 0.5) inside.push_back(x);
   }

@@ -129,7 +129,7 @@ Vector Surfaces::Hit(const Touch& touch, const Vector& x, const Vector& v, doubl
   const Vector u = v - surface;
   const double approach = touch.normal.dot(u);
   if (gap + h * approach >= 0 || approach >= -kApproach) return v;
-  const Vector after = Impact(u, touch.normal, touch.law);
+  Vector after = Impact(u, touch.normal, touch.law);
   if (body == nullptr) return after;
   const double mass = level_->system.mass[touch.node];
   const Eigen::Matrix3d inverse_mass =

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "trainer/fit_model.h"
 #include "twin/topology.h"
@@ -13,7 +14,7 @@ namespace {
 
 // Of an inner particle, about: on a sheet the first two, three, four shells of a regular grid, in
 // a solid the first two, the first three and part of the fourth.
-const std::vector<int> kNeighbours = {12, 18, 28};
+constexpr int kNeighbours[] = {12, 18, 28};
 
 constexpr double kStart = 8;  // sub-steps a frame; the fit looks for a better start itself
 
@@ -45,7 +46,9 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   own.base = MakeAlike(own.base);
   std::vector<DiagnosisBody> bodies = {own};
   TrainOptions options;
-  if (twin.order.size() == 0) options.neighbours = kNeighbours;
+  if (twin.order.size() == 0) {
+    options.neighbours.assign(std::begin(kNeighbours), std::end(kNeighbours));
+  }
   options.cone = own.base.contact.cone;
   const Recording shaped = WithShapeOf(own.base, recording);
   for (const Candidate& candidate : Candidates(shaped, options)) {

@@ -81,7 +81,7 @@ Eigen::MatrixXd GramianFeatures(const SpringMassSystem& system, int rank) {
 
   // modes within the space
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(basis.transpose() * stiffness * basis);
-  const Eigen::VectorXd w2 = eigen.eigenvalues();
+  const Eigen::VectorXd& w2 = eigen.eigenvalues();
   const Eigen::MatrixXd modes = basis * eigen.eigenvectors();
   const Eigen::MatrixXd damping = modes.transpose() * Laplacian(system, system.dashpot) * modes;
   const Eigen::VectorXd d = damping.diagonal().array() + std::max(system.drag, 1e-3);
