@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "tests/support/random_system.h"
 #include "tests/support/swung_rope.h"
 #include "twin/error.h"
 #include "twin/stability.h"
@@ -53,6 +56,23 @@ TEST(StartSystem, BodyOffTheGroundHasNoContactRadius) {
   EXPECT_EQ(MakeStartSystem(AboveGround(0.2), {}).contact_radius.maxCoeff(), 0);
   EXPECT_EQ(MakeStartSystem(AboveGround(-0.002), {}).contact_radius.maxCoeff(), 0);
   EXPECT_EQ(MakeStartSystem(SwungRope(8, 2), {}).contact_radius.maxCoeff(), 0);
+}
+
+TEST(StartSystem, BodyThatFallsTouchesTheGroundWhereItComesToLie) {
+  constexpr int kFrames = 40, kLies = 20;  // from this frame on
+  Recording recording = AboveGround(0.2);
+  const double ground = (*recording.ground)[3];
+  Random noise(1);
+  recording.points.assign(kFrames, recording.start.leftCols(recording.point_count()));
+  for (int frame = kLies; frame < kFrames; ++frame) {
+    recording.points[frame].row(2).setConstant(ground + 0.004);
+    recording.points[frame] += noise.Box(recording.point_count(), 0.0005);
+  }
+  recording.points[30].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  recording.train_frames = kFrames;
+  EXPECT_NEAR(MakeStartSystem(recording, {}).contact_radius[0], 0.004, 0.0003);
+  recording.train_frames = kLies;  // what comes later is not known
+  EXPECT_EQ(MakeStartSystem(recording, {}).contact_radius[0], 0);
 }
 
 TEST(StartSystem, SaysThatThereIsNoBody) {
