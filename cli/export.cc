@@ -65,7 +65,9 @@ std::string CommandLine(const CLI::App& command) {
       line.append(" --").append(option->get_lnames().front());
     }
     for (const std::string& value : option->results()) {
-      line.append(" ").append(ShellWord(std::filesystem::path(value).filename().string()));
+      std::filesystem::path path(value);
+      if (!path.has_filename()) path = path.parent_path();  // DIR/
+      line.append(" ").append(ShellWord(path.filename().string()));
     }
   }
   return line;
@@ -80,7 +82,7 @@ std::string DescribeLevel(const ExportedLevel& level) {
   if (plan.substep < plan.timestep) {
     text += fmt::format(" with sub-steps of {:.4g} ms", 1e3 * plan.substep);
   }
-  text += fmt::format(", largest stable one {:.4g} ms\n", 1e3 * plan.critical_timestep);
+  text += fmt::format(", largest stable one {}\n", plan.LargestTimestep());
   for (const std::string& difference : plan.differences) text += "  " + difference + "\n";
   if (plan.springs != SpringKind::kFlex) return text;
   const FlexRounding& rounding = level.flexes.rounding;

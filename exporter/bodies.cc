@@ -47,12 +47,28 @@ double DampingRatio(double restitution) {
   return decay / std::hypot(decay, std::numbers::pi);
 }
 
+// What joints of nodes and controllers are, whatever the defaults of a scene that includes the
+// level say.
+XmlElement* AddSlideDefaults(XmlElement* parent) {
+  return AddElement(parent, "joint",
+                    {{"type", "slide"},
+                     {"limited", "false"},
+                     {"stiffness", "0"},
+                     {"armature", "0"},
+                     {"frictionloss", "0"}});
+}
+
 // Nodes do not collide with each other, nor with nodes of other twins; everything else with them.
 // Their friction counts, whatever that of the other geom.
 void AddNodeGeomDefaults(const LevelPlan& plan, XmlElement* node_class) {
   const SpringMassSystem& system = plan.system();
   XmlElement* geom = AddElement(node_class, "geom",
-                                {{"size", Number(Radius(system, 0))},
+                                {{"type", "sphere"},
+                                 {"condim", "3"},
+                                 {"margin", "0"},
+                                 {"gap", "0"},
+                                 {"solimp", "0.9 0.95 0.001 0.5 2"},
+                                 {"size", Number(Radius(system, 0))},
                                  {"contype", "0"},
                                  {"priority", "1"},
                                  {"friction", Number(system.contact.friction) + " 0 0"},
@@ -125,18 +141,27 @@ void AddDefaults(const LevelPlan& plan, XmlElement* mujoco) {
   const std::string size = Number(DrawnRadius(*plan.twin));
   XmlElement* top = AddElement(AddElement(mujoco, "default"), "default", {{"class", plan.name}});
   AddElement(top, "site", {{"size", size}, {"group", "4"}});
-  AddElement(top, "tendon", {{"width", Number(kTendonWidth)}, {"group", "4"}});
+  AddElement(top, "tendon",
+             {{"width", Number(kTendonWidth)},
+              {"group", "4"},
+              {"limited", "false"},
+              {"frictionloss", "0"},
+              {"armature", "0"}});
 
   XmlElement* node = AddElement(top, "default", {{"class", plan.NodeClass()}});
-  XmlElement* joint = AddElement(node, "joint", {{"type", "slide"}});
+  XmlElement* joint = AddSlideDefaults(node);
   if (AllEqual(system.mass)) joint->SetAttribute("damping", Number(Damping(plan, 0)).c_str());
   if (plan.contact != ContactKind::kNone) AddNodeGeomDefaults(plan, node);
 
   if (system.controllers == 0) return;
   XmlElement* controller = AddElement(top, "default", {{"class", plan.ControllerClass()}});
-  AddElement(controller, "joint", {{"type", "slide"}});
+  AddSlideDefaults(controller)->SetAttribute("damping", "0");
   AddElement(controller, "geom",
-             {{"size", size}, {"contype", "0"}, {"conaffinity", "0"}, {"rgba", "0.8 0.3 0.2 1"}});
+             {{"type", "sphere"},
+              {"size", size},
+              {"contype", "0"},
+              {"conaffinity", "0"},
+              {"rgba", "0.8 0.3 0.2 1"}});
   if (plan.controllers == ControllerKind::kMocap) return;
   const double gain = ControllerMass(plan) / plan.timestep;
   AddElement(controller, "position", {{"kp", Number(gain / plan.timestep)}, {"kv", Number(gain)}});

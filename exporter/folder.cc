@@ -8,7 +8,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <regex>
 #include <system_error>
+#include <vector>
 
 #include "twin/atomic_file.h"
 #include "twin/error.h"
@@ -41,6 +43,18 @@ class DraftFolder {
   std::string path_;
 };
 
+// Levels of an earlier export that `files` does not bring again.
+void RemoveOtherLevels(const fs::path& folder, const std::map<std::string, std::string>& files) {
+  static const std::regex kLevel(R"((scene_)?level\d+\.xml)");
+  std::vector<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::regex_match(name, kLevel) && !files.contains(name)) others.push_back(entry.path());
+  }
+  std::error_code ignored;
+  for (const fs::path& other : others) fs::remove(other, ignored);
+}
+
 }  // namespace
 
 void WriteFolder(const std::string& path, const std::map<std::string, std::string>& files,
@@ -61,6 +75,7 @@ void WriteFolder(const std::string& path, const std::map<std::string, std::strin
   if (empty) {
     fs::rename(draft.path(), target, error);
   } else {
+    RemoveOtherLevels(target, files);
     for (const auto& [name, content] : files) {
       if (!error) fs::rename(draft.path() / name, target / name, error);
     }

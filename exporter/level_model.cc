@@ -26,9 +26,9 @@ void AddHeadComment(const LevelPlan& plan, XmlElement* mujoco) {
 
 void AddNumbers(const LevelPlan& plan, XmlElement* mujoco) {
   XmlElement* custom = AddElement(mujoco, "custom");
-  AddElement(
-      custom, "numeric",
-      {{"name", plan.name + "_critical_timestep"}, {"data", Number(plan.critical_timestep)}});
+  AddElement(custom, "numeric",
+             {{"name", plan.name + "_critical_timestep"},
+              {"data", Number(std::min(plan.critical_timestep, plan.largest_timestep))}});
   AddElement(custom, "numeric", {{"name", plan.name + "_substep"}, {"data", Number(plan.substep)}});
 }
 

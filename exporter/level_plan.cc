@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <limits>
 
 #include "twin/effects/effect_set.h"
 #include "twin/effects/registry.h"
@@ -17,8 +19,11 @@
 namespace physpring {
 namespace {
 
-constexpr double kPluginTimestep = 2e-3;  // s
-constexpr const char* kReserved = "world";
+constexpr double kPluginTimestep = 2e-3;      // s
+const double kSlideLimit = std::sqrt(5) - 1;  // of a controller's step, see below
+
+// Names that MuJoCo gives itself: its root body and its main default class.
+bool IsReserved(const std::string& name) { return name == "world" || name == "main"; }
 
 bool IsPlain(char letter) {
   return std::isalnum(static_cast<unsigned char>(letter)) || letter == '_' || letter == '.' ||
@@ -31,13 +36,13 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
       throw Error(fmt::format("name {}: only letters, digits and \"_.-\" may be in a name",
                               Quote(options.name)));
     }
-    if (options.name == kReserved) {
-      throw Error(fmt::format("name {}: is what MuJoCo calls its root body; choose another",
+    if (IsReserved(options.name)) {
+      throw Error(fmt::format("name {}: is one that MuJoCo gives itself; choose another",
                               Quote(options.name)));
     }
     return options.name;
   }
-  std::string name = twin.name.empty() || twin.name == kReserved ? "twin" : twin.name;
+  std::string name = twin.name.empty() || IsReserved(twin.name) ? "twin" : twin.name;
   std::replace_if(
       name.begin(), name.end(), [](char letter) { return !IsPlain(letter); }, '_');
   return name;
@@ -59,17 +64,25 @@ void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
   const TwinLevel& level = plan->twin->levels[plan->level];
   plan->critical_timestep = ComputeStabilityBound(level.system).timestep;
   plan->substep = 1 / (plan->twin->fps * ChooseSubsteps(level, plan->twin->fps, 0));
+  plan->largest_timestep = std::numeric_limits<double>::infinity();
   if (plan->springs == SpringKind::kPlugin) {
     plan->timestep = options.timestep > 0 ? options.timestep : kPluginTimestep;
     plan->substep = std::min(plan->substep, plan->timestep);
-    return;
+  } else {
+    if (options.timestep > 0) plan->substep = options.timestep;
+    plan->timestep = plan->substep;
+    plan->largest_timestep = plan->critical_timestep;
   }
-  if (options.timestep > 0) plan->substep = options.timestep;
-  plan->timestep = plan->substep;
-  if (plan->timestep >= plan->critical_timestep) {
+  if (plan->timestep >= plan->largest_timestep) {
     throw Error(fmt::format(
-        "twin {} level {}: a time step of {} s is unstable, the largest stable one is {:.4g} s",
-        Quote(plan->twin->name), plan->level, plan->timestep, plan->critical_timestep));
+        "twin {} level {}: a time step of {} s is unstable, expected less than {:.6g} s",
+        Quote(plan->twin->name), plan->level, plan->timestep, plan->largest_timestep));
+  }
+  // kp = m / H^2 and kv = m / H of the controllers' actuators are stable below (sqrt(5) - 1) H:
+  // r^2 + 2 r < 4 with r = h / H
+  const bool slides = plan->controllers == ControllerKind::kSlide && plan->system().controllers > 0;
+  if (slides) {
+    plan->largest_timestep = std::min(plan->largest_timestep, kSlideLimit * plan->timestep);
   }
 }
 
@@ -106,6 +119,10 @@ void PlanEffects(LevelPlan* plan) {
 }
 
 }  // namespace
+
+std::string LevelPlan::LargestTimestep() const {
+  return std::isfinite(largest_timestep) ? fmt::format("{:.4g} ms", 1e3 * largest_timestep) : "any";
+}
 
 std::string LevelPlan::Body(int column) const {
   const int nodes = system().node_count();

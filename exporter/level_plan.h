@@ -24,6 +24,7 @@ struct LevelPlan {
   double substep = 0;                                   // s: of the springs and the drag
   double timestep = 0;           // s: of scene.xml; equal to the sub-step without the plugin
   double critical_timestep = 0;  // s: the largest stable sub-step
+  double largest_timestep = 0;   // s: steps of MuJoCo below it are stable; infinity: any
 
   // The level as its effects change it, and what carries those effects in MuJoCo.
   Setting setting;
@@ -35,6 +36,12 @@ struct LevelPlan {
   bool NeedsPlugin() const {
     return springs == SpringKind::kPlugin || contact == ContactKind::kPlugin;
   }
+  // Whether the scene must ask for another cone of friction than MuJoCo's default.
+  bool WantsEllipticCone() const {
+    return contact == ContactKind::kMujoco && system().contact.cone == FrictionCone::kElliptic;
+  }
+  // "0.2 ms", or "any".
+  std::string LargestTimestep() const;
   // Name of the body and of the site of node or controller `column`.
   std::string Body(int column) const;
   // Of the body that is a flex's vertex, on a node: MuJoCo lets no body with joint damping be one.

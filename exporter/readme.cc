@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "exporter/xml.h"
+
 namespace physpring {
 namespace {
 
@@ -11,10 +13,9 @@ std::string FormatTable(const std::vector<ExportedLevel>& levels) {
       "| model | scene | nodes | springs | time step | largest stable step |\n"
       "|---|---|---|---|---|---|\n";
   for (const ExportedLevel& level : levels) {
-    table +=
-        fmt::format("| `{}` | `{}` | {} | {} | {:.4g} ms | {:.4g} ms |\n", level.model, level.scene,
-                    level.plan.system().node_count(), level.plan.system().spring_count(),
-                    1e3 * level.plan.timestep, 1e3 * level.plan.critical_timestep);
+    table += fmt::format("| `{}` | `{}` | {} | {} | {:.4g} ms | {} |\n", level.model, level.scene,
+                         level.plan.system().node_count(), level.plan.system().spring_count(),
+                         1e3 * level.plan.timestep, level.plan.LargestTimestep());
   }
   return table;
 }
@@ -23,9 +24,10 @@ std::string DescribeSprings(const LevelPlan& plan) {
   switch (plan.springs) {
     case SpringKind::kPlugin:
       return fmt::format(
-          "Springs, drag and contact are the plugin `physpring.springs`, with sub-steps of at most "
-          "{:.4g} ms (level {}) inside each step of MuJoCo: the plugin library must be loaded "
-          "first.",
+          "Springs and drag are the plugin `physpring.springs`, with sub-steps of at most {:.4g} "
+          "ms "
+          "(level {}) inside each step of MuJoCo: the plugin library must be loaded first (`import "
+          "mujoco` does so where the package `physpring-mujoco` is installed).",
           1e3 * plan.substep, plan.level);
     case SpringKind::kFlex:
       return "Springs are the edges of 1-D flexes, grouped by stiffness: an approximation of the "
@@ -48,7 +50,9 @@ std::string DescribeContact(const LevelPlan& plan) {
     default:
       return "Contact is MuJoCo's soft one, with the learned friction and a damping that bounces "
              "about as learned (" +
-             law + "). The learned impulse law itself needs the plugin.";
+             law + "), and with the cone of the scene's `<option>`; the twin was trained with " +
+             (contact.cone == FrictionCone::kElliptic ? "`elliptic`" : "`pyramidal`, the default") +
+             ". The learned impulse law itself needs the plugin.";
   }
 }
 
@@ -77,6 +81,10 @@ std::string DescribeControllers(const LevelPlan& plan) {
       plan.Body(plan.system().node_count()), 1e3 * plan.timestep);
 }
 
+std::string ConeAttribute(const LevelPlan& plan) {
+  return plan.WantsEllipticCone() ? " cone=\"elliptic\"" : "";
+}
+
 }  // namespace
 
 std::string FormatReadme(const std::vector<ExportedLevel>& levels, const std::string& command) {
@@ -99,10 +107,10 @@ model = mujoco.MjModel.from_xml_path("scene.xml")
 
 {5} {6}
 
-{7}{9}In a scene of your own, with the Euler integrator and a time step below the largest stable one (springs
-in the plugin take sub-steps of their own, so any will do):
+{7}{9}In a scene of your own, with the Euler integrator and a time step below the largest stable one:
 
 ```xml
+<option timestep="{10}" integrator="Euler"{11}/>
 <asset>
   <model name="{0}" file="{8}"/>
 </asset>
@@ -116,7 +124,7 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
                      plan.name, plan.twin->trained_on.empty() ? "a recording" : "recordings",
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
                      DescribeContact(plan), DescribeControllers(plan), levels[0].model,
-                     DescribeDifferences(levels));
+                     DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan));
 }
 
 }  // namespace physpring

@@ -49,10 +49,11 @@ void AddCamera(const Extent& extent, XmlElement* worldbody) {
 }
 
 void AddOptions(const LevelPlan& plan, const Extent& extent, XmlElement* mujoco) {
-  AddElement(mujoco, "option",
-             {{"timestep", Number(plan.timestep)},
-              {"integrator", "Euler"},
-              {"gravity", Numbers(plan.setting.gravity)}});
+  XmlElement* option = AddElement(mujoco, "option",
+                                  {{"timestep", Number(plan.timestep)},
+                                   {"integrator", "Euler"},
+                                   {"gravity", Numbers(plan.setting.gravity)}});
+  if (plan.WantsEllipticCone()) option->SetAttribute("cone", "elliptic");
   AddElement(mujoco, "statistic",
              {{"center", Numbers(extent.centre)}, {"extent", Number(2 * extent.size)}});
   XmlElement* visual = AddElement(mujoco, "visual");

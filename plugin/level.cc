@@ -60,6 +60,12 @@ void CheckNode(const mjModel* model, int body, const std::string& where) {
   for (int j = 0; j < 3; ++j) {
     const double armature = model->dof_armature[dof + j];
     if (armature != 0) fail(fmt::format("has joint armature {}, expected 0", armature));
+    const double friction = model->dof_frictionloss[dof + j];
+    if (friction != 0) fail(fmt::format("has joint frictionloss {}, expected 0", friction));
+    const int joint = model->body_jntadr[body] + j;
+    const double stiffness = model->jnt_stiffness[joint];
+    if (stiffness != 0) fail(fmt::format("has joint stiffness {}, expected 0", stiffness));
+    if (model->jnt_limited[joint]) fail("has joints with a range, expected none");
   }
 }
 

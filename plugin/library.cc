@@ -57,6 +57,11 @@ void Compute(const mjModel* model, mjData* data, int instance, int) {
 
 template <class Plugin>
 void Register() {
+  int slot = 0;
+  if (mjp_getPlugin(Plugin::kName, &slot)) {
+    mju_warning("physpring: %s is loaded already, from another file, which stays", Plugin::kName);
+    return;
+  }
   mjpPlugin plugin;
   mjp_defaultPlugin(&plugin);
   plugin.name = Plugin::kName;

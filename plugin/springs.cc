@@ -23,6 +23,8 @@ Level ReadLevelWithSprings(const mjModel* model, int instance, const Attributes&
   return level;
 }
 
+constexpr double kMostSubsteps = 1e6;  // in a step
+
 double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes) {
   const double stable = ComputeStabilityBound(system).timestep;
   const double substep = attributes.Number("substep", kSafety * stable);
@@ -84,6 +86,12 @@ Springs::Springs(const mjModel* model, int instance)
       lag_(3 * static_cast<std::size_t>(nodes())) {
   const std::string where = Attributes(model, instance).where();
   CheckOptions(model, springs_->level, where);
+  if (model->opt.timestep > kMostSubsteps * springs_->substep) {
+    throw Error(
+        fmt::format("{}: attribute 'substep' is {} s, less than a millionth of the time "
+                    "step of {} s",
+                    where, springs_->substep, model->opt.timestep));
+  }
   const std::size_t size = 3 * (static_cast<std::size_t>(nodes()) + ways_.size()) + 1 +
                            6 * (state_.size() - first_internal());
   if (static_cast<std::size_t>(model->plugin_statenum[instance]) == size) return;
@@ -98,7 +106,8 @@ int Springs::StateSize(const mjModel* model, int instance) {
   if (!attributes.Has("effects")) return size;
   try {
     const Level level = ReadLevelWithSprings(model, instance, attributes);
-    return size + 6 * MakeEffects(level.system)->extra_records();
+    const auto effects = MakeEffects(level.system);
+    return size + (effects ? 6 * effects->extra_records() : 0);
   } catch (const Error&) {
     return size;  // refused, with a message, when an instance is made
   }
@@ -193,7 +202,8 @@ void Springs::Substep(double time, double elapsed, double h, const Contact<doubl
 void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   const EulerStep step(model);
   const double time = step.time();
-  const int substeps = std::max(1, static_cast<int>(std::ceil(time / springs_->substep - 1e-9)));
+  const double wanted = std::ceil(time / springs_->substep - 1e-9);
+  const int substeps = static_cast<int>(std::clamp(wanted, 1.0, kMostSubsteps));
   const double h = time / substeps;
   SetTimestep(h);
   for (int j = 0; j < 3; ++j) view_.kick.f[j] = h * step.gravity()[j];

@@ -144,7 +144,58 @@ TEST(ExportScene, HoldsWhatTheTwinHolds) {
   EXPECT_EQ(model->body_pos[3 * body], system.position(0, 2));
   const int numeric = Id(model, mjOBJ_NUMERIC, "block_critical_timestep");
   EXPECT_EQ(model->numeric_data[model->numeric_adr[numeric]],
-            folder.result.levels[0].plan.critical_timestep);
+            folder.result.levels[0].plan.largest_timestep);
+}
+
+TEST(ExportScene, AsksForTheConeOfMujocosContacts) {
+  Twin twin = SmallTwin(1);
+  ExportOptions options;
+  options.contact = ContactKind::kMujoco;
+  twin.levels[0].system.contact.cone = FrictionCone::kElliptic;
+  EXPECT_EQ(ExportedFolder(twin, options).Load("scene.xml")->opt.cone, mjCONE_ELLIPTIC);
+  twin.levels[0].system.contact.cone = FrictionCone::kPyramidal;
+  EXPECT_EQ(ExportedFolder(twin, options).Load("scene.xml")->opt.cone, mjCONE_PYRAMIDAL);
+}
+
+// The model of level 0, included in a scene with `defaults`.
+ModelPtr Included(const ExportedFolder& folder, const std::string& defaults) {
+  return folder.LoadText("<mujoco><default>" + defaults +
+                         "</default><include file=\"level0.xml\"/></mujoco>");
+}
+
+TEST(ExportScene, DefaultsOfTheSceneDoNotChangeAnIncludedLevel) {
+  const Twin twin = SmallTwin(1);
+  const ExportedFolder folder(twin, {});
+  const ModelPtr alone = Included(folder, "");
+  const ModelPtr model = Included(folder, R"(
+      <joint armature="0.01" frictionloss="0.1" stiffness="5" damping="1" range="-0.01 0.01"
+             limited="true" springref="0.1" margin="0.1"/>
+      <geom type="box" size="1 1 1" margin="0.01" condim="1" solimp="0.5 0.6 0.01"/>
+      <tendon frictionloss="1" stiffness="3" damping="2" limited="true" range="0 0.01"/>)");
+  ASSERT_EQ(model->nv, alone->nv);
+  for (int i = 0; i < model->nv; ++i) {
+    EXPECT_EQ(model->dof_armature[i], alone->dof_armature[i]);
+    EXPECT_EQ(model->dof_frictionloss[i], alone->dof_frictionloss[i]);
+    EXPECT_EQ(model->dof_damping[i], alone->dof_damping[i]);
+    EXPECT_EQ(model->jnt_stiffness[i], alone->jnt_stiffness[i]);
+    EXPECT_EQ(model->jnt_limited[i], alone->jnt_limited[i]);
+  }
+  for (int i = 0; i < model->ngeom; ++i) {
+    EXPECT_EQ(model->geom_type[i], alone->geom_type[i]);
+    EXPECT_EQ(model->geom_size[3 * i], alone->geom_size[3 * i]);
+    if (model->geom_conaffinity[i] == 0) continue;  // a controller's, for pictures
+    EXPECT_EQ(model->geom_condim[i], alone->geom_condim[i]);
+    EXPECT_EQ(model->geom_margin[i], alone->geom_margin[i]);
+    for (int j = 0; j < mjNIMP; ++j) {
+      EXPECT_EQ(model->geom_solimp[mjNIMP * i + j], alone->geom_solimp[mjNIMP * i + j]);
+    }
+  }
+  for (int i = 0; i < model->ntendon; ++i) {
+    EXPECT_EQ(model->tendon_frictionloss[i], alone->tendon_frictionloss[i]);
+    EXPECT_EQ(model->tendon_stiffness[i], alone->tendon_stiffness[i]);
+    EXPECT_EQ(model->tendon_damping[i], alone->tendon_damping[i]);
+    EXPECT_EQ(model->tendon_limited[i], alone->tendon_limited[i]);
+  }
 }
 
 TEST(ExportScene, ActuatorsTakeControllersToTheirPlaceInOneStep) {

@@ -48,6 +48,16 @@ TEST(Folder, IsNotOverwrittenUnlessForced) {
   EXPECT_EQ(ReadFile(path + "/y"), "one");
 }
 
+TEST(Folder, LosesLevelsThatAreNotExportedAgain) {
+  const TemporaryFolder folder;
+  WriteFolder(folder.path(), {{"level0.xml", "0"}, {"scene_level1.xml", "1"}, {"my.xml", "2"}},
+              false);
+  WriteFolder(folder.path(), {{"level0.xml", "3"}}, true);
+  EXPECT_EQ(ReadFile(folder.File("level0.xml")), "3");
+  EXPECT_EQ(ReadFile(folder.File("my.xml")), "2");
+  EXPECT_FALSE(std::filesystem::exists(folder.File("scene_level1.xml")));
+}
+
 TEST(Folder, FillsAnEmptyOne) {
   const TemporaryFolder folder;
   WriteFolder(folder.path(), {{"x", "one"}}, false);

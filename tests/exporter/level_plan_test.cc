@@ -46,8 +46,8 @@ TEST(LevelPlan, RefusesAnUnstableTimestep) {
   ExportOptions options;
   options.timestep = 0.05;
   EXPECT_THAT(MessageOf(SmallTwin(1), 0, options),
-              testing::MatchesRegex("twin 'block' level 0: a time step of 0.05 s is unstable, the "
-                                    "largest stable one is 0.00[0-9]+ s"));
+              testing::MatchesRegex("twin 'block' level 0: a time step of 0.05 s is unstable, "
+                                    "expected less than 0.00[0-9]+ s"));
 }
 
 TEST(LevelPlan, RefusesALevelThatIsNotThere) {
@@ -59,6 +59,30 @@ TEST(LevelPlan, RefusesOddCharactersInAGivenName) {
   options.name = "my rope";
   EXPECT_EQ(MessageOf(SmallTwin(1), 0, options),
             "name 'my rope': only letters, digits and \"_.-\" may be in a name");
+}
+
+TEST(LevelPlan, RefusesNamesThatMujocoGivesItself) {
+  for (const char* name : {"world", "main"}) {
+    ExportOptions options;
+    options.name = name;
+    EXPECT_THAT(MessageOf(SmallTwin(1), 0, options), testing::HasSubstr("choose another"));
+    Twin twin = SmallTwin(1);
+    twin.name = name;
+    EXPECT_EQ(PlanLevel(twin, 0, {}).name, "twin");
+  }
+}
+
+TEST(LevelPlan, SlidingControllersBoundTheTimestep) {
+  const Twin twin = SmallTwin(1);
+  ExportOptions options;
+  options.timestep = 1e-4;
+  options.controllers = ControllerKind::kSlide;
+  EXPECT_NEAR(PlanLevel(twin, 0, options).largest_timestep, 1.236e-4, 1e-7);
+  options.controllers = ControllerKind::kMocap;
+  const LevelPlan mocap = PlanLevel(twin, 0, options);
+  EXPECT_EQ(mocap.largest_timestep, mocap.critical_timestep);
+  options.springs = SpringKind::kPlugin;
+  EXPECT_EQ(PlanLevel(twin, 0, options).LargestTimestep(), "any");
 }
 
 TEST(LevelPlan, ControllersSlideWhereTheirVelocityCounts) {

@@ -66,6 +66,9 @@ TEST(Messages, NameAttributeAndValue) {
       {"object_friction", "3", "object_friction is 3, expected 0 to 2"},
       {"cone", "round", "attribute 'cone' is 'round', expected elliptic or pyramidal"},
       {"cone", "elliptic", ""},
+      {"effects", "[]", ""},
+      {"substep", "1e-300",
+       "attribute 'substep' is 1e-300 s, less than a millionth of the time step"},
       {"collision_distance", "-1", "collision_distance is -1, expected 0 or more"},
       {"contact_radius", "1 2 3", "attribute 'contact_radius' has 3 values, expected 1 or 2"},
   };
