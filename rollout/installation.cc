@@ -71,7 +71,7 @@ Finding Plugins() {
   }
   std::vector<std::string> names;
   for (int slot = 0; slot < mjp_pluginCount(); ++slot) {
-    names.push_back(mjp_getPluginAtSlot(slot)->name);
+    names.emplace_back(mjp_getPluginAtSlot(slot)->name);
   }
   finding.found = names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
   return finding;

@@ -31,9 +31,8 @@ Eigen::Quaterniond UnitQuaternion(double w, double x, double y, double z);
 // The angle [rad] that turns one orientation into the other.
 double AngleBetween(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second);
 
-// Along the shortest turn from the first orientation (share 0) to the second (1).
-Eigen::Quaterniond Slerp(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second,
-                         double share);
+// Along the shortest turn from a (share 0) to b (1).
+Eigen::Quaterniond Slerp(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b, double share);
 
 // A turn about the vertical axis z, by `angle` [rad].
 Eigen::Quaterniond Yaw(double angle);

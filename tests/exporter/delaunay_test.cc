@@ -26,7 +26,9 @@ double SumOfAreas(const Eigen::Matrix2Xd& points) {
 
 Eigen::Matrix2Xd Lattice(int columns, int rows) {
   Eigen::Matrix2Xd points(2, columns * rows);
-  for (int i = 0; i < points.cols(); ++i) points.col(i) << i % columns, i / columns;
+  for (int i = 0; i < points.cols(); ++i) {
+    points.col(i) = Eigen::Vector2i(i % columns, i / columns).cast<double>();
+  }
   return points;
 }
 

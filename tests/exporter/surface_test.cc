@@ -41,7 +41,9 @@ double Volume(const TriangleMesh& mesh) {
 
 Points Lattice(int x, int y, int z) {
   Points points(3, x * y * z);
-  for (int i = 0; i < points.cols(); ++i) points.col(i) << i % x, i / x % y, i / (x * y);
+  for (int i = 0; i < points.cols(); ++i) {
+    points.col(i) = Eigen::Vector3i(i % x, i / x % y, i / (x * y)).cast<double>();
+  }
   return points;
 }
 

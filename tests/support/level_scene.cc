@@ -59,7 +59,7 @@ void Set(const std::string& key, const std::string& value, Config* config) {
     text = value;
     return;
   }
-  config->push_back({key, value});
+  config->emplace_back(key, value);
 }
 
 Config Attributes(const SpringMassSystem& system, const LevelSceneOptions& options) {

@@ -35,7 +35,7 @@ SpringMassSystem MakeBlock() {
   Points position(3, kParticles + kControllers);
   Eigen::VectorXd mass(kParticles);
   for (int i = 0; i < kParticles; ++i) {
-    position.col(i) = kSpacing * Eigen::Vector3d(i % 5, i / 5 % 4, i / 20);
+    position.col(i) = kSpacing * Eigen::Vector3i(i % 5, i / 5 % 4, i / 20).cast<double>();
     mass[i] = 0.002 + 0.001 * (i % 2);
   }
   position.col(kParticles) = kSpacing * Eigen::Vector3d(0.5, 1.5, 2);
@@ -89,8 +89,8 @@ Recording RecordingOfMotion(const Twin& twin, int frames) {
   recording.velocity = Points::Zero(3, system.node_count());
   recording.train_frames = frames * 7 / 10;
   for (int t = 0; t < frames; ++t) {
-    recording.points.push_back(system.position.leftCols(twin.points));
-    recording.controllers.push_back(system.position.rightCols(kControllers));
+    recording.points.emplace_back(system.position.leftCols(twin.points));
+    recording.controllers.emplace_back(system.position.rightCols(kControllers));
     recording.controllers[t].row(0).array() += 0.05 * std::sin(t / recording.fps * 8);
   }
   const std::vector<Points> motion = Predict(twin, 0, recording, {});

@@ -24,8 +24,8 @@ Recording SwungRope(int particles, int frames) {
   recording.start.col(particles) = Eigen::Vector3d(0.001, 0, 0.01);
   recording.rest = recording.start;
   for (int t = 0; t < frames; ++t) {
-    recording.points.push_back(recording.start.leftCols(particles));
-    recording.controllers.push_back(recording.start.rightCols(1));
+    recording.points.emplace_back(recording.start.leftCols(particles));
+    recording.controllers.emplace_back(recording.start.rightCols(1));
     recording.controllers[t](0, 0) += 0.02 * std::sin(12 * t / recording.fps);
   }
   return recording;

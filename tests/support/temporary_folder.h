@@ -3,8 +3,7 @@
 #ifndef PHYSPRING_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 #define PHYSPRING_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 
-#include <stdlib.h>
-
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>

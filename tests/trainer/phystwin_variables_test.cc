@@ -123,7 +123,9 @@ TEST(PhysTwinVariables, TrainSheetsForHalfAsLong) {
   sheet.interior.resize(3, 0);
   sheet.points.assign(1, Points(3, 100));
   sheet.rest.resize(3, 100);
-  for (int i = 0; i < 100; ++i) sheet.rest.col(i) = 0.01 * Eigen::Vector3d(i % 10, i / 10, 0);
+  for (int i = 0; i < 100; ++i) {
+    sheet.rest.col(i) = 0.01 * Eigen::Vector3i(i % 10, i / 10, 0).cast<double>();
+  }
   EXPECT_EQ(PhysTwinPasses(sheet), 100);
 }
 

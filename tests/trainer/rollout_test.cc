@@ -26,7 +26,7 @@ struct Case {
 
   Case() {
     Random random(4);
-    ScaleToSubsteps(1 / recording.fps, kSubsteps / 2, 0.7, &system);
+    ScaleToSubsteps(1 / recording.fps, 0.5 * kSubsteps, 0.7, &system);
     for (double& k : system.stiffness) k *= random(0.5, 1);
     for (double& c : system.dashpot) c *= random(0.5, 1);
     for (double& length : system.rest_length) length *= random(0.95, 1.05);

@@ -57,7 +57,9 @@ TEST(Neighbours, WithinAreThoseOfAFullSearch) {
 // 5 x 5 x 5 points 1 m apart: 6 are equally near to an inner one.
 Points Grid() {
   Points points(3, 125);
-  for (int i = 0; i < 125; ++i) points.col(i) << i % 5, i / 5 % 5, i / 25;
+  for (int i = 0; i < 125; ++i) {
+    points.col(i) = Eigen::Vector3i(i % 5, i / 5 % 5, i / 25).cast<double>();
+  }
   return points;
 }
 

@@ -36,10 +36,10 @@ Recording MakeRecording() {
   for (int t = 0; t < 4; ++t) {
     Points points(3, 3);
     points << 0, 1, 2, 0, 0, 0.25, 1, 1, 1;
-    recording.points.push_back(points.array() + 0.125 * t);
-    recording.controllers.push_back(Points::Constant(3, 1, 3 + t));
-    recording.surface.push_back(Points::Constant(3, 2, t));
-    recording.track.push_back(Points::Constant(3, 1, -t));
+    recording.points.emplace_back(points.array() + 0.125 * t);
+    recording.controllers.emplace_back(Points::Constant(3, 1, 3 + t));
+    recording.surface.emplace_back(Points::Constant(3, 2, t));
+    recording.track.emplace_back(Points::Constant(3, 1, -t));
   }
   recording.points[1].col(2).setConstant(kNan);
   recording.surface[0].col(1).setConstant(kNan);

@@ -11,7 +11,7 @@ namespace {
 // Points at random in a box of half that size, one frame.
 Recording Box(const Eigen::Vector3d& half_size) {
   Recording recording;
-  recording.points.push_back(half_size.asDiagonal() * Points::Random(3, 500));
+  recording.points.emplace_back(half_size.asDiagonal() * Points::Random(3, 500));
   return recording;
 }
 
@@ -50,7 +50,7 @@ TEST(View, KeepsDistances) {
 
 TEST(View, BoundsWhatWasMeasured) {
   Recording recording = Box({1, 0.5, 0.2});
-  recording.points.push_back(Points::Constant(3, 1, std::nan("")));  // not seen
+  recording.points.emplace_back(Points::Constant(3, 1, std::nan("")));  // not seen
   const View view(recording);
   const Points upright = view.ToUpright(recording.points[0]);
   EXPECT_LT((upright.rowwise().minCoeff() - view.low()).norm(), 1e-12);
