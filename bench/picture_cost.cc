@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "rollout/painter.h"
@@ -64,8 +66,14 @@ void Run(const std::string& folder, int level) {
 
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
+  int level = 0;
+  if (argc > 2) {
+    const std::string_view text = argv[2];
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), level);
+    if (error != std::errc() || end != text.data() + text.size()) return 2;
+  }
   try {
-    physpring::Run(argv[1], argc > 2 ? std::atoi(argv[2]) : 0);
+    physpring::Run(argv[1], level);
   } catch (const physpring::Error& error) {
     fmt::print(stderr, "picture_cost: {}\n", error.what());
     return 1;
