@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/commands.h"
@@ -48,9 +50,12 @@ std::string FolderOf(const std::string& path) {
 CLI::Validator IsShard(SweepOptions* sweep) {
   return CLI::Validator(
       [sweep](std::string& text) {
-        int shard = 0, shards = 0, end = 0;
-        const int read = std::sscanf(text.c_str(), "%d/%d%n", &shard, &shards, &end);
-        if (read != 2 || end != static_cast<int>(text.size()) || shard < 1 || shard > shards) {
+        int shard = 0, shards = 0;
+        const char* last = text.data() + text.size();
+        const auto [slash, bad_shard] = std::from_chars(text.data(), last, shard);
+        const bool is_pair = bad_shard == std::errc() && slash != last && *slash == '/';
+        const auto [end, bad_shards] = std::from_chars(is_pair ? slash + 1 : last, last, shards);
+        if (bad_shards != std::errc() || end != last || shard < 1 || shard > shards) {
           return "takes i/n with i from 1 to n, not '" + text + "'";
         }
         sweep->shard = shard;

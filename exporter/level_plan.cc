@@ -19,8 +19,8 @@
 namespace physpring {
 namespace {
 
-constexpr double kPluginTimestep = 2e-3;      // s
-const double kSlideLimit = std::sqrt(5) - 1;  // of a controller's step, see below
+constexpr double kPluginTimestep = 2e-3;            // s
+constexpr double kSlideLimit = 1.2360679774997898;  // sqrt(5) - 1, see below
 
 // Names that MuJoCo gives itself: its root body and its main default class.
 bool IsReserved(const std::string& name) { return name == "world" || name == "main"; }

@@ -14,7 +14,9 @@ namespace {
 
 template <class Plugin>
 Plugin* Get(const mjData* data, int instance) {
-  return reinterpret_cast<Plugin*>(data->plugin_data[instance]);
+  // MuJoCo keeps a plugin's data as an integer
+  return reinterpret_cast<Plugin*>(
+      data->plugin_data[instance]);  // NOLINT(performance-no-int-to-ptr)
 }
 
 template <class Plugin>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <ranges>
 #include <vector>
 
 #include "cli/picture/nice_step.h"
@@ -23,9 +24,9 @@ struct Curve {
 
 std::vector<Curve> CurvesOf(const RecordingResult& result) {
   std::vector<Curve> curves{{"motionless", "still", &result.motionless.track}};
-  for (auto level = result.levels.rbegin(); level != result.levels.rend(); ++level) {
-    curves.push_back({fmt::format("level {}", level->level),
-                      fmt::format("level{}", std::min(level->level, 3)), &level->lifted.track});
+  for (const LevelResult& level : std::views::reverse(result.levels)) {
+    curves.push_back({fmt::format("level {}", level.level),
+                      fmt::format("level{}", std::min(level.level, 3)), &level.lifted.track});
   }
   return curves;
 }
@@ -133,9 +134,9 @@ std::string FormatLabels(const std::vector<Curve>& curves, const Axes& axes) {
   std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
   constexpr double kLine = 15;
   double lowest = kBottom + kLine;
-  for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
-    label->y = std::min(label->y, lowest - kLine);
-    lowest = label->y;
+  for (Label& label : std::views::reverse(labels)) {
+    label.y = std::min(label.y, lowest - kLine);
+    lowest = label.y;
   }
   std::string svg;
   for (const Label& label : labels) {

@@ -17,7 +17,7 @@ Points AllMeasured(const Recording& recording) {
   for (const std::vector<Points>* frames : {&recording.points, &recording.controllers}) {
     for (const Points& frame : *frames) {
       for (Eigen::Index i = 0; i < frame.cols(); ++i) {
-        if (frame.col(i).allFinite()) seen.push_back(frame.col(i));
+        if (frame.col(i).allFinite()) seen.emplace_back(frame.col(i));
       }
     }
   }
