@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "twin/cone_name.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -57,9 +58,7 @@ std::string OptionsJson(const TrainOptions& options, const std::string& from) {
   json["controller_velocity"] = !options.controller_velocity   ? "auto"
                                 : *options.controller_velocity ? "on"
                                                                : "off";
-  json["cone"] = !options.cone                              ? "auto"
-                 : *options.cone == FrictionCone::kElliptic ? "elliptic"
-                                                            : "pyramidal";
+  json["cone"] = options.cone ? ConeName(*options.cone) : "auto";
   json["self_collision"] = options.self_collision ? "on" : "off";
   return json.dump();
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cli/info_text.h"
+#include "twin/cone_name.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -95,13 +96,12 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
     json[quantity.key] = {{"min", range.least}, {"median", range.median}, {"max", range.most}};
   }
   json["drag_1_s"] = system.drag;
-  json["contact"] = {
-      {"restitution", system.contact.restitution},
-      {"friction", system.contact.friction},
-      {"cone", system.contact.cone == FrictionCone::kElliptic ? "elliptic" : "pyramidal"},
-      {"object_restitution", system.contact.object_restitution},
-      {"object_friction", system.contact.object_friction},
-      {"collision_distance_m", system.contact.collision_distance}};
+  json["contact"] = {{"restitution", system.contact.restitution},
+                     {"friction", system.contact.friction},
+                     {"cone", ConeName(system.contact.cone)},
+                     {"object_restitution", system.contact.object_restitution},
+                     {"object_friction", system.contact.object_friction},
+                     {"collision_distance_m", system.contact.collision_distance}};
   return json;
 }
 

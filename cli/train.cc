@@ -23,6 +23,7 @@
 #include "cli/training.h"
 #include "trainer/fit_data.h"
 #include "trainer/make_fitter.h"
+#include "twin/cone_name.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/predict.h"
@@ -52,10 +53,7 @@ TrainOptions OptionsOf(const Arguments& arguments) {
                                                       : Optimizer::kGaussNewton;
   options.single_precision = arguments.precision == "float";
   if (arguments.velocity != "auto") options.controller_velocity = arguments.velocity == "on";
-  if (arguments.cone != "auto") {
-    options.cone =
-        arguments.cone == "elliptic" ? FrictionCone::kElliptic : FrictionCone::kPyramidal;
-  }
+  if (arguments.cone != "auto") options.cone = ConeOf(arguments.cone);
   options.reduction = std::map<std::string, Reduction>{{"learned", Reduction::kLearned},
                                                        {"random", Reduction::kRandom},
                                                        {"gramian", Reduction::kGramian},
@@ -227,7 +225,7 @@ void AddFitOptions(CLI::App* command, Arguments* arguments) {
   AddChoice(command, "--controller-velocity", &arguments->velocity, {"auto", "on", "off"},
             "whether dashpots feel the controllers' velocity; auto: whatever "
             "predicts better (full), no (two-stage)");
-  AddChoice(command, "--cone", &arguments->cone, {"auto", "elliptic", "pyramidal"},
+  AddChoice(command, "--cone", &arguments->cone, {"auto", kElliptic, kPyramidal},
             "of friction on the ground: Coulomb's, or MuJoCo's default; auto: whatever predicts "
             "better (full), elliptic (two-stage)");
   command->add_flag("--self-collision", options.self_collision,

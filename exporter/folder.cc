@@ -75,10 +75,10 @@ void WriteFolder(const std::string& path, const std::map<std::string, std::strin
   if (empty) {
     fs::rename(draft.path(), target, error);
   } else {
-    RemoveOtherLevels(target, files);
     for (const auto& [name, content] : files) {
       if (!error) fs::rename(draft.path() / name, target / name, error);
     }
+    if (!error) RemoveOtherLevels(target, files);
   }
   if (error) throw Error(fmt::format("{}: cannot be written: {}", path, error.message()));
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/cone_name.h"
 #include "twin/effects/effect_json.h"
 
 namespace physpring {
@@ -53,7 +54,7 @@ void AddContactKeys(const LevelPlan& plan, XmlElement* instance) {
   AddConfig(instance, "friction", Number(contact.friction));
   AddConfig(instance, "object_restitution", Number(contact.object_restitution));
   AddConfig(instance, "object_friction", Number(contact.object_friction));
-  if (contact.cone == FrictionCone::kPyramidal) AddConfig(instance, "cone", "pyramidal");
+  if (contact.cone == FrictionCone::kPyramidal) AddConfig(instance, "cone", kPyramidal);
   AddConfig(instance, "collision_distance", Number(contact.collision_distance));
   AddConfig(instance, "contact_radius", Compact(plan.system().contact_radius));
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "exporter/xml.h"
+#include "twin/cone_name.h"
 
 namespace physpring {
 namespace {
@@ -82,7 +83,7 @@ std::string DescribeControllers(const LevelPlan& plan) {
 }
 
 std::string ConeAttribute(const LevelPlan& plan) {
-  return plan.WantsEllipticCone() ? " cone=\"elliptic\"" : "";
+  return plan.WantsEllipticCone() ? fmt::format(" cone=\"{}\"", kElliptic) : "";
 }
 
 }  // namespace

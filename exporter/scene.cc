@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "exporter/xml.h"
+#include "twin/cone_name.h"
 
 namespace physpring {
 namespace {
@@ -53,7 +54,7 @@ void AddOptions(const LevelPlan& plan, const Extent& extent, XmlElement* mujoco)
                                   {{"timestep", Number(plan.timestep)},
                                    {"integrator", "Euler"},
                                    {"gravity", Numbers(plan.setting.gravity)}});
-  if (plan.WantsEllipticCone()) option->SetAttribute("cone", "elliptic");
+  if (plan.WantsEllipticCone()) option->SetAttribute("cone", kElliptic);
   AddElement(mujoco, "statistic",
              {{"center", Numbers(extent.centre)}, {"extent", Number(2 * extent.size)}});
   XmlElement* visual = AddElement(mujoco, "visual");

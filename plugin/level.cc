@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "twin/cone_name.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
@@ -106,9 +107,7 @@ void ReadContact(const Attributes& attributes, Level* level) {
   contact.object_restitution = attributes.Number("object_restitution", contact.object_restitution);
   contact.object_friction = attributes.Number("object_friction", contact.object_friction);
   contact.collision_distance = attributes.Number("collision_distance", contact.collision_distance);
-  if (attributes.Word("cone", {"elliptic", "pyramidal"}) == "pyramidal") {
-    contact.cone = FrictionCone::kPyramidal;
-  }
+  contact.cone = ConeOf(attributes.Word("cone", {kElliptic, kPyramidal}));
   level->has_contact_radius = attributes.Has("contact_radius");
   system.contact_radius.setZero(system.node_count());
   if (level->has_contact_radius) {

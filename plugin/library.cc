@@ -14,9 +14,8 @@ namespace {
 
 template <class Plugin>
 Plugin* Get(const mjData* data, int instance) {
-  // MuJoCo keeps a plugin's data as an integer
-  return reinterpret_cast<Plugin*>(
-      data->plugin_data[instance]);  // NOLINT(performance-no-int-to-ptr)
+  // MuJoCo keeps a plugin's data as an integer. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  return reinterpret_cast<Plugin*>(data->plugin_data[instance]);
 }
 
 template <class Plugin>

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "twin/cone_name.h"
 #include "twin/effects/effect_json.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
@@ -24,7 +25,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "physpring twin";
 constexpr int kVersion = 1;
 constexpr const char* kStatePrefix = "train/";
-constexpr const char* kPyramidal = "pyramidal";  // `cone`, which is absent where it is elliptic
 
 // Visits every number of a level that is a scalar, under its name in the file.
 template <typename Level, typename Visitor>
@@ -70,7 +70,7 @@ void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) 
   if (!system.effects.empty()) {
     arrays[prefix + "effects"] = NpzArray::Text(EffectsToJson(system.effects));
   }
-  if (system.contact.cone == FrictionCone::kPyramidal) {
+  if (system.contact.cone == FrictionCone::kPyramidal) {  // absent where it is elliptic
     arrays[prefix + "cone"] = NpzArray::Text(kPyramidal);
   }
   VisitScalars(level, [&](const char* name, const double& value) {
