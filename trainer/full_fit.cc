@@ -16,8 +16,11 @@ namespace {
 
 constexpr int kMostRecordings = 4;         // that common factors are fitted to
 constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
-constexpr int kCommonSteps = 15;
-constexpr int kGaussNewtonSteps = 15;
+constexpr int kStepsPerGain = 6;           // of common factors
+constexpr int kFirstSpringGain = 2;        // of kObserverGains
+constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
+constexpr int kGaussNewtonSteps = 15;  // with the last gain ...
+constexpr int kFollowedSteps = 3;      // ... and with each one before
 constexpr double kSlow = 0.99;  // a step that lowers the mean square by less gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end Gauss-Newton
 constexpr int kAdamSteps = 200;
@@ -54,19 +57,26 @@ void FullFit::StepChoose() {
   model_ = choice_.Best();
   state_.stage = Stage::kCommon;
   state_.iteration = 0;
+  state_.gain = 0;
   state_.damping = 1e-2;
+  model_.factors = model_.start;
 }
 
 void FullFit::StepCommon() {
   const LevenbergMarquardtState factors =
-      StepFactors(model_, FitEpisodes(data_, kMostRecordings), options_, state_.damping);
+      StepFactors(model_, FitEpisodes(data_, kMostRecordings), options_,
+                  kObserverGains[state_.gain], state_.damping);
   model_.factors = factors.x;
   state_.damping = factors.damping;
   state_.mean_square = factors.mean_square;
   status_ = fmt::format("{}, all fit frames: {:.3f} mm", model_.candidate.Label(),
                         Millimetres(factors.mean_square));
-  if (++state_.iteration < kCommonSteps && !factors.converged) return;
+  if (++state_.iteration < kStepsPerGain && !factors.converged) return;
+  state_.iteration = 0;
+  state_.damping = 1e-2;
+  if (++state_.gain <= kLastGain) return;
   state_.stage = Stage::kGaussNewton;
+  state_.gain = kFirstSpringGain;
   state_.x = Eigen::VectorXd::Zero(SpringParameters().size());
   state_.iteration = state_.slow = 0;
   state_.damping = 1e-3;
@@ -94,6 +104,7 @@ void FullFit::StepGaussNewton() {
   const Parameters parameters = SpringParameters();
   TrackProblem::Options follow = FollowOptions(first(), model_.candidate, options_);
   follow.rollout.growth_limit = std::numeric_limits<double>::infinity();
+  follow.rollout.observer.gain = kObserverGains[state_.gain];
   TrackProblem problem(parameters, all_, follow);
   const GaussNewtonState before{state_.x, state_.damping, state_.mean_square, false};
   const GaussNewtonState after = GaussNewtonStep(&problem, before, SpringPrior(parameters));
@@ -104,6 +115,13 @@ void FullFit::StepGaussNewton() {
   const bool first_step = state_.iteration++ == 0;
   const bool gained = first_step || after.mean_square < kSlow * before.mean_square;
   state_.slow = gained ? 0 : state_.slow + 1;
+  if (state_.gain < kLastGain) {
+    if (!after.converged && state_.slow < kMostSlow && state_.iteration < kFollowedSteps) return;
+    ++state_.gain;
+    state_.iteration = state_.slow = 0;
+    state_.damping = 1e-3;
+    return;
+  }
   // with little to gain early on, the residuals are too rough for it
   if (after.converged || state_.slow == kMostSlow || state_.iteration >= GaussNewtonSteps()) {
     BeginAdam(state_.iteration < GaussNewtonSteps());
@@ -198,9 +216,10 @@ double FullFit::Progress() const {
     case Stage::kChoose:
       return 0.35 * choice_.Progress();
     case Stage::kCommon:
-      return 0.35 + 0.05 * state_.iteration / kCommonSteps;
+      return 0.35 + 0.05 * state_.gain / (kLastGain + 1);
     case Stage::kGaussNewton:
-      return 0.4 + 0.45 * state_.iteration / GaussNewtonSteps();
+      return 0.4 + 0.1 * (state_.gain - kFirstSpringGain) +
+             0.25 * state_.iteration / GaussNewtonSteps();
     case Stage::kAdam:
       return 0.85 + 0.15 * state_.iteration / AdamSteps();
     case Stage::kDone:
@@ -229,7 +248,7 @@ std::map<std::string, NpzArray> FullFit::Save() const {
   StateArrays arrays;
   choice_.Save(&arrays);
   arrays["train/stage"] =
-      StoreCounters({static_cast<int>(state_.stage), state_.iteration, state_.slow,
+      StoreCounters({static_cast<int>(state_.stage), state_.iteration, state_.slow, state_.gain,
                      static_cast<int>(model_.factors.size()), static_cast<int>(state_.x.size()),
                      static_cast<int>(state_.adam_mean.size())});
   Eigen::VectorXd scalars(5);
@@ -246,10 +265,11 @@ std::map<std::string, NpzArray> FullFit::Save() const {
 
 void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
   choice_.Load(arrays);
-  const std::vector<int> counters = LoadCounters(arrays, "stage", 6);
+  const std::vector<int> counters = LoadCounters(arrays, "stage", 7);
   state_.stage = static_cast<Stage>(counters[0]);
   state_.iteration = counters[1];
   state_.slow = counters[2];
+  state_.gain = counters[3];
   const Eigen::VectorXd scalars = LoadVector(arrays, "scalars", 5);
   state_.damping = scalars[0];
   state_.mean_square = scalars[1];
@@ -257,11 +277,11 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
   state_.best_mean_square = scalars[3];
   state_.gained_mean_square = scalars[4];
   model_ = choice_.Best();
-  model_.factors = LoadVector(arrays, "factors", counters[3]);
-  state_.x = LoadVector(arrays, "x", counters[4]);
-  state_.best = LoadVector(arrays, "best", state_.stage >= Stage::kAdam ? counters[4] : 0);
-  state_.adam_mean = LoadVector(arrays, "adam_mean", counters[5]);
-  state_.adam_mean_square = LoadVector(arrays, "adam_mean_square", counters[5]);
+  model_.factors = LoadVector(arrays, "factors", counters[4]);
+  state_.x = LoadVector(arrays, "x", counters[5]);
+  state_.best = LoadVector(arrays, "best", state_.stage >= Stage::kAdam ? counters[5] : 0);
+  state_.adam_mean = LoadVector(arrays, "adam_mean", counters[6]);
+  state_.adam_mean_square = LoadVector(arrays, "adam_mean_square", counters[6]);
 }
 
 Twin FullFit::Result() const {

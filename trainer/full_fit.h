@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fit of level 0, by gradients and sensitivities of full rollouts, in four stages:
 //   choose        the model and the start values of its common factors (model_choice.h)
-//   common        the same factors again, by Levenberg-Marquardt on all fit frames
-//   Gauss-Newton  every spring's own stiffness, dashpot and rest length, while it gets on
+//   common        the same factors again, by Levenberg-Marquardt on all fit frames, under an
+//                 observer whose gain falls to 0 (observer.h)
+//   Gauss-Newton  every spring's own stiffness, dashpot and rest length, while it gets on; so, too
 //   Adam          goes on where contacts or chaotic motions make residuals too rough for that
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
@@ -40,7 +41,8 @@ class FullFit : public Fitter {
   // Everything that the next step depends on, besides data, options and the choice.
   struct State {
     Stage stage = Stage::kChoose;
-    int iteration = 0;  // of the stage
+    int gain = 0;       // of kObserverGains
+    int iteration = 0;  // of the stage, with this gain
     int slow = 0;       // steps in a row that gained little
     double damping = 0;
     double mean_square = 0;                       // of the residuals at x

@@ -11,20 +11,21 @@
 
 namespace physpring {
 
-// Frames first .. last - 1 of a rollout from the recording's start.
-struct ScoredFrames {
-  const Recording* recording;
-  int first, last;
-};
-
 struct HeldBack {
-  std::vector<Episode> fit;
-  std::vector<ScoredFrames> scored;
+  struct Judged {
+    const Recording* whole;  // as it was measured
+    Recording held_back;     // the same, with nothing but the held-back frames seen
+  };
+
+  std::vector<Recording> fit;  // with the held-back frames unseen
+  std::vector<Judged> judged;
+
+  std::vector<Episode> FitEpisodes() const;  // all fit frames; *this must outlive them
 };
 
 // With four or more continuous runs, whole runs are held back (a quarter of them, spread evenly);
-// otherwise the last quarter of each recording's fit frames. At most `most` recordings on each
-// side, spread evenly.
+// otherwise the fourth and the last eighth of each recording's fit frames. At most `most`
+// recordings on each side, spread evenly. `data` must outlive the result.
 HeldBack HoldBack(const FitData& data, int most);
 
 // All fit frames of at most `most` recordings, spread evenly.

@@ -113,20 +113,19 @@ void LevelFit::BeginSprings() {
   springs_ = Eigen::VectorXd::Zero(SpringParameters().size());
 }
 
-// The mean track error of the scored frames, m; infinite where the motion diverges.
+// The mean track error of the held-back frames, m; infinite where the motion diverges.
 double LevelFit::HeldBackError(const SpringMassSystem& system) const {
   std::vector<Episode> episodes;
-  for (const ScoredFrames& scored : held_back_.scored) {
-    episodes.push_back({scored.recording, scored.last});
+  for (const HeldBack::Judged& judged : held_back_.judged) {
+    episodes.push_back({judged.whole, judged.whole->train_frames});
   }
   const LiftedMotion motion(twin_, level_, episodes, MotionOptions(options_.threads));
   const auto moved = motion.Run(system, motion.Substeps(system));
   if (!moved) return std::numeric_limits<double>::infinity();
   double sum = 0;
   for (std::size_t e = 0; e < episodes.size(); ++e) {
-    const ScoredFrames& scored = held_back_.scored[e];
-    sum += MeanTrackError(moved->particles[e], *scored.recording, scored.first, scored.last)
-               .value_or(0);
+    const Recording& held_back = held_back_.judged[e].held_back;
+    sum += MeanTrackError(moved->particles[e], held_back, 1, held_back.train_frames).value_or(0);
   }
   return sum / static_cast<double>(episodes.size());
 }
@@ -142,7 +141,8 @@ void LevelFit::StepNetwork() {
     best_iteration_ = iteration_;
   }
   status_ = fmt::format("level {}, network: {:.3f} mm on held-back frames", level_, 1e3 * score);
-  const LiftedMotion motion(twin_, level_, held_back_.fit, MotionOptions(options_.threads));
+  const LiftedMotion motion(twin_, level_, held_back_.FitEpisodes(),
+                            MotionOptions(options_.threads));
   const std::optional<LiftedLoss> loss = ComputeLiftedLoss(motion, system);
   const bool worse = iteration_ - best_iteration_ >= kPatience * options_.network.updates;
   if (worse || iteration_ >= options_.network.epochs * options_.network.updates) {

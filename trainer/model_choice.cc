@@ -9,58 +9,37 @@
 #include <limits>
 #include <numeric>
 
+#include "trainer/lifted_motion.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kMostRecordings = 4;                     // that start values are sought on
-constexpr std::array<double, 2> kHorizon = {0.3, 1};   // part of the fit frames, of two rounds
-constexpr std::array<int, 3> kMostSteps = {8, 30, 4};  // of each round
-constexpr int kSpringSteps = 20;                       // of conjugate gradients
-constexpr int kFinalists = 2;
-constexpr int kRounds = 3;
+constexpr int kMostRecordings = 4;  // that start values are sought on
+// Of each round: what is fitted under which of kObserverGains, and how many go on from it.
+struct Round {
+  int first_gain, last_gain;
+  int most_steps;  // with each gain
+  int most_left;
+};
+constexpr std::array<Round, 3> kRounds = {{{0, 1, 5, 6}, {2, 3, 6, 2}, {3, 3, 4, 1}}};
+constexpr int kRoundCount = static_cast<int>(kRounds.size());
+constexpr int kConjugateGradientSteps = 20;
 // Start systems tried, in sub-steps a frame, and (on a ground) changes of the friction's factor.
 constexpr double kSoftest = 2, kStiffest = 64;
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-int Part(int frames, double part) { return std::clamp(static_cast<int>(part * frames), 2, frames); }
-
-std::vector<Episode> Shorten(std::vector<Episode> episodes, double part) {
-  for (Episode& episode : episodes) episode.frames = Part(episode.frames, part);
-  return episodes;
-}
-
-// The mean over frames of the mean distance of the points seen.
-double FramesError(const std::vector<Points>& positions, const ScoredFrames& scored) {
-  double error = 0;
-  int frames = 0;
-  for (int frame = scored.first; frame < scored.last; ++frame) {
-    const Points& measured = scored.recording->points[frame];
-    double frame_error = 0;
-    int seen = 0;
-    for (int i = 0; i < measured.cols(); ++i) {
-      if (std::isnan(measured(0, i))) continue;
-      frame_error += (positions[frame].col(i) - measured.col(i)).norm();
-      ++seen;
-    }
-    if (seen == 0) continue;
-    error += frame_error / seen;
-    ++frames;
-  }
-  return frames > 0 ? error / frames : 0;
-}
-
 }  // namespace
 
 LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
-                                    const TrainOptions& options, double damping) {
+                                    const TrainOptions& options, double gain, double damping) {
   const Recording& recording = *episodes.at(0).recording;
   TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
   follow.threads = 1;  // the differences run in parallel
   follow.most_substeps /= 2;
+  follow.rollout.observer.gain = gain;
   const Parameters factors =
       CommonFactors(StartSystem(recording, model.candidate, model.start_substeps), recording);
   TrackProblem problem(factors, episodes, follow);
@@ -81,7 +60,7 @@ SpringMassSystem ChosenModel::System(const Recording& recording) const {
 ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
     : data_(data), options_(options), held_back_(HoldBack(data, kMostRecordings)) {
   for (const Candidate& candidate : Candidates(first(), options)) {
-    contenders_.push_back({{candidate, 0, {}}, kInfinity});
+    contenders_.push_back({{candidate, 0, {}, {}}, kInfinity});
   }
   BeginRound();
   StartSystem(first(), contenders_[0].model.candidate, kSoftest);  // throws where there is no body
@@ -93,52 +72,43 @@ void ModelChoice::SearchStart(ChosenModel* model) const {
   for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
     const Parameters factors =
         CommonFactors(StartSystem(first(), model->candidate, substeps), first());
-    TrackProblem problem(factors, held_back_.fit,
-                         FollowOptions(first(), model->candidate, options_));
+    TrackProblem::Options follow = FollowOptions(first(), model->candidate, options_);
+    follow.rollout.observer.gain = kObserverGains[0];
+    TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
     for (double friction : kFrictions) {
       Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
       if (factors.friction() >= 0) x[factors.friction()] = friction;
-      if (model->start_substeps == 0) *model = {model->candidate, substeps, x};
+      if (model->start_substeps == 0) *model = {model->candidate, substeps, x, x};
       if (factors.friction() < 0 && friction != 0) continue;
       const auto r = problem.Residuals(x);
       if (!r || r->squaredNorm() >= least) continue;
       least = r->squaredNorm();
-      *model = {model->candidate, substeps, x};
+      *model = {model->candidate, substeps, x, x};
     }
   }
 }
 
-// The first round is judged by the fit frames that it did not fit, the others by the held-back
-// ones.
-std::vector<ScoredFrames> ModelChoice::JudgedBy() const {
-  if (round_ > 0) return held_back_.scored;
-  std::vector<ScoredFrames> scored;
-  for (const Episode& episode : held_back_.fit) {
-    const int fitted = Part(episode.frames, kHorizon[0]);
-    scored.push_back({episode.recording, std::min(fitted, episode.frames - 1), episode.frames});
-  }
-  return scored;
-}
-
+// Of held-back frames, under the observer that the round ends with.
 double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& candidate) const {
   double sum = 0;
-  const std::vector<ScoredFrames> scored = JudgedBy();
-  for (const ScoredFrames& frames : scored) {
+  for (const HeldBack::Judged& judged : held_back_.judged) {
     RolloutOptions options = FollowOptions(first(), candidate, options_).rollout;
     if (options.substeps == 0) {
       options.substeps =
-          StableSubsteps(ComputeStabilityBound(system), 1 / frames.recording->fps, kStepSafety);
+          StableSubsteps(ComputeStabilityBound(system), 1 / judged.whole->fps, kStepSafety);
     }
-    const auto rollout = RollOut(system, {frames.recording, frames.last}, options);
+    options.observer.gain = kObserverGains[kRounds[round_].last_gain];
+    const int frames = judged.whole->train_frames;
+    const auto rollout = RollOut(system, {judged.whole, frames}, options);
     if (rollout->diverged()) return kInfinity;
-    sum += FramesError(rollout->positions(), frames);
+    sum += MeanTrackError(rollout->positions(), judged.held_back, 1, frames).value_or(0);
   }
-  return sum / static_cast<double>(std::max<std::size_t>(1, scored.size()));
+  return sum / static_cast<double>(held_back_.judged.size());
 }
 
 bool ModelChoice::Step() {
-  if (round_ == kRounds) return false;
-  if (round_ < 2) {
+  if (round_ == kRoundCount) return false;
+  if (round_ < kRoundCount - 1) {
     StepCommonFactors();
   } else {
     StepSprings();
@@ -151,12 +121,14 @@ void ModelChoice::StepCommonFactors() {
   if (model.start_substeps == 0) SearchStart(&model);
   if (iteration_ == 0) damping_ = 1e-2;
   const LevenbergMarquardtState factors =
-      StepFactors(model, Shorten(held_back_.fit, kHorizon[round_]), options_, damping_);
+      StepFactors(model, held_back_.FitEpisodes(), options_, kObserverGains[gain_], damping_);
   model.factors = factors.x;
   damping_ = factors.damping;
   status_ = fmt::format("{}, start values: {:.3f} mm", model.candidate.Label(),
                         1e3 * std::sqrt(3 * factors.mean_square));
-  if (++iteration_ < kMostSteps[round_] && !factors.converged) return;
+  if (++iteration_ < kRounds[round_].most_steps && !factors.converged) return;
+  iteration_ = 0;
+  if (++gain_ <= kRounds[round_].last_gain) return;
   FinishContender(model.System(first()));
 }
 
@@ -169,9 +141,10 @@ void ModelChoice::StepSprings() {
   }
   TrackProblem::Options follow = FollowOptions(first(), model.candidate, options_);
   follow.rollout.growth_limit = kInfinity;
-  TrackProblem problem(parameters, held_back_.fit, follow);
+  follow.rollout.observer.gain = kObserverGains[gain_];
+  TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
-  prior.conjugate_gradient_steps = kSpringSteps;
+  prior.conjugate_gradient_steps = kConjugateGradientSteps;
   const GaussNewtonState after =
       GaussNewtonStep(&problem, {springs_, damping_, mean_square_, false}, prior);
   springs_ = after.x;
@@ -179,7 +152,7 @@ void ModelChoice::StepSprings() {
   mean_square_ = after.mean_square;
   status_ = fmt::format("{}, single springs: {:.3f} mm", model.candidate.Label(),
                         1e3 * std::sqrt(3 * after.mean_square));
-  if (++iteration_ < kMostSteps[round_] && !after.converged) return;
+  if (++iteration_ < kRounds[round_].most_steps && !after.converged) return;
   FinishContender(parameters.Apply(springs_));
 }
 
@@ -189,6 +162,7 @@ void ModelChoice::FinishContender(const SpringMassSystem& system) {
   status_ = fmt::format("{}: {:.3f} mm on held-back frames", contender.model.candidate.Label(),
                         1e3 * contender.score);
   iteration_ = 0;
+  gain_ = kRounds[round_].first_gain;
   if (++turn_ < static_cast<int>(round_order_.size())) return;
   ++round_;
   BeginRound();
@@ -199,25 +173,13 @@ void ModelChoice::BeginRound() {
   if (round_ == 0) {
     round_order_.resize(contenders_.size());
     std::iota(round_order_.begin(), round_order_.end(), 0);
+    gain_ = kRounds[0].first_gain;
     return;
   }
   const auto better = [&](int i, int j) { return contenders_[i].score < contenders_[j].score; };
-  std::vector<int> next;
-  if (round_ == 1) {  // of each neighbour count the better treatment of controllers
-    for (int i : round_order_) {
-      const bool same = !next.empty() && contenders_[next.back()].model.candidate.neighbours ==
-                                             contenders_[i].model.candidate.neighbours;
-      if (!same) {
-        next.push_back(i);
-      } else if (better(i, next.back())) {
-        next.back() = i;
-      }
-    }
-  } else {
-    next = round_order_;
-    std::stable_sort(next.begin(), next.end(), better);
-    next.resize(std::min<std::size_t>(next.size(), round_ == 2 ? kFinalists : 1));
-  }
+  std::vector<int> next = round_order_;
+  std::stable_sort(next.begin(), next.end(), better);
+  next.resize(std::min<std::size_t>(next.size(), kRounds[round_ - 1].most_left));
   std::erase_if(next, [&](int i) { return !std::isfinite(contenders_[i].score); });
   if (next.empty()) {
     throw Error(fmt::format(
@@ -227,14 +189,18 @@ void ModelChoice::BeginRound() {
   }
   std::sort(next.begin(), next.end());
   round_order_ = next;
-  if (round_ == 2 && next.size() == 1) round_ = kRounds;  // there is nothing left to choose
+  if (next.size() == 1) round_ = kRoundCount;  // there is nothing left to choose
+  if (round_ < kRoundCount) gain_ = kRounds[round_].first_gain;
 }
 
 double ModelChoice::Progress() const {
-  if (round_ == kRounds) return 1;
-  constexpr std::array<double, kRounds + 1> kStart = {0, 0.2, 0.6, 1};
-  const double turns = (turn_ + static_cast<double>(iteration_) / kMostSteps[round_]) /
-                       static_cast<double>(round_order_.size());
+  if (round_ == kRoundCount) return 1;
+  constexpr std::array<double, kRounds.size() + 1> kStart = {0, 0.5, 0.9, 1};
+  const Round& round = kRounds[round_];
+  const int gains = round.last_gain - round.first_gain + 1;
+  const double part =
+      (gain_ - round.first_gain + static_cast<double>(iteration_) / round.most_steps) / gains;
+  const double turns = (turn_ + part) / static_cast<double>(round_order_.size());
   return kStart[round_] + (kStart[round_ + 1] - kStart[round_]) * turns;
 }
 
@@ -248,7 +214,7 @@ ChosenModel ModelChoice::Best() const {
 }
 
 void ModelChoice::Save(StateArrays* arrays) const {
-  std::vector<int> counters = {round_, turn_, iteration_};
+  std::vector<int> counters = {round_, turn_, gain_, iteration_};
   std::vector<int> in_round(contenders_.size(), 0);
   for (int i : round_order_) in_round[i] = 1;
   counters.insert(counters.end(), in_round.begin(), in_round.end());
@@ -260,6 +226,7 @@ void ModelChoice::Save(StateArrays* arrays) const {
   add(springs_);
   for (const Contender& contender : contenders_) {
     numbers.insert(numbers.end(), {contender.score, contender.model.start_substeps});
+    add(contender.model.start);
     add(contender.model.factors);
   }
   (*arrays)["train/choice"] = StoreCounters(counters);
@@ -267,11 +234,11 @@ void ModelChoice::Save(StateArrays* arrays) const {
 }
 
 void ModelChoice::Load(const StateArrays& arrays) {
-  const std::vector<int> counters = LoadCounters(arrays, "choice", 3 + contenders_.size());
-  round_ = counters[0], turn_ = counters[1], iteration_ = counters[2];
+  const std::vector<int> counters = LoadCounters(arrays, "choice", 4 + contenders_.size());
+  round_ = counters[0], turn_ = counters[1], gain_ = counters[2], iteration_ = counters[3];
   round_order_.clear();
   for (std::size_t i = 0; i < contenders_.size(); ++i) {
-    if (counters[3 + i] != 0) round_order_.push_back(static_cast<int>(i));
+    if (counters[4 + i] != 0) round_order_.push_back(static_cast<int>(i));
   }
   const auto found = arrays.find("train/contenders");
   if (found == arrays.end()) {
@@ -299,6 +266,7 @@ void ModelChoice::Load(const StateArrays& arrays) {
   for (Contender& contender : contenders_) {
     contender.score = next();
     contender.model.start_substeps = next();
+    next_vector(&contender.model.start);
     next_vector(&contender.model.factors);
   }
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The choice of a model (fit_model.h) and of the start values of its common factors, on held-back
-// frames. In three rounds:
-//   starts   each candidate's factors are fitted to the first part of the frames, from the best of
-//            a few start stiffnesses and frictions, and judged by the frames after it
-//   factors  each neighbour count, with the better of its treatments of controllers, is fitted to
-//            all frames but the held-back ones, which judge it
-//   springs  the two best are fitted a few steps further, spring by spring, and judged again
+// frames. In three rounds, under an observer whose gain falls (observer.h):
+//   far      each candidate's factors are fitted with the two highest gains, from the best of a few
+//            start stiffnesses and frictions; six go on
+//   near     those are fitted with lower gains; two go on
+//   springs  those are fitted a few steps further, spring by spring, with the same low gain
 #ifndef PHYSPRING_TRAINER_MODEL_CHOICE_H_
 #define PHYSPRING_TRAINER_MODEL_CHOICE_H_
 
@@ -23,14 +22,14 @@ namespace physpring {
 struct ChosenModel {
   Candidate candidate;
   double start_substeps = 0;
-  Eigen::VectorXd factors;
+  Eigen::VectorXd start, factors;  // at first and as fitted
 
   SpringMassSystem System(const Recording& recording) const;
 };
 
-// One step of Levenberg-Marquardt on common factors.
+// One step of Levenberg-Marquardt on common factors, under an observer of this gain.
 LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
-                                    const TrainOptions& options, double damping);
+                                    const TrainOptions& options, double gain, double damping);
 
 class ModelChoice {
  public:
@@ -64,16 +63,15 @@ class ModelChoice {
   void BeginRound();
   void SearchStart(ChosenModel* model) const;
   double TrackError(const SpringMassSystem& system, const Candidate& candidate) const;
-  std::vector<ScoredFrames> JudgedBy() const;
 
   const FitData& data_;
   const TrainOptions& options_;
   HeldBack held_back_;
   std::vector<Contender> contenders_;
   std::vector<int> round_order_;  // the contenders in the round: indices, ascending
-  int round_ = 0, turn_ = 0, iteration_ = 0;
-  double damping_ = 0, mean_square_ = 0;  // of the optimiser
-  Eigen::VectorXd springs_;               // of the contender, in the last round
+  int round_ = 0, turn_ = 0, gain_ = 0, iteration_ = 0;  // gain_: of kObserverGains
+  double damping_ = 0, mean_square_ = 0;                 // of the optimiser
+  Eigen::VectorXd springs_;                              // of the contender, in the last round
   std::string status_;
 };
 

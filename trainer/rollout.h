@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "trainer/observer.h"
 #include "twin/recording.h"
 #include "twin/simulator.h"
 
@@ -28,6 +29,7 @@ struct RolloutOptions {
   bool controller_velocity = true;
   int substeps = 0;  // a frame, >= 1
   double growth_limit = 1e3;
+  Observer observer;
 };
 
 struct RolloutAdjoint {
@@ -40,7 +42,8 @@ class Rollout {
  public:
   virtual ~Rollout() = default;
 
-  // Positions of frames 0, 1, ... (3 x nodes, m); the frames after a divergence are missing.
+  // Positions of frames 0, 1, ... (3 x nodes, m), before the observer's correction; the frames
+  // after a divergence are missing.
   const std::vector<Points>& positions() const { return positions_; }
   bool diverged() const { return diverged_; }
 

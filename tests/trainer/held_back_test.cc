@@ -3,92 +3,102 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 namespace physpring {
 namespace {
 
-// One recording for each entry, of these runs; recording i has 20 + i fit frames.
+// One recording for each entry, of these runs; recording i has 20 + i fit frames and five more, in
+// which its number can be read off the one point.
 FitData OfRuns(const std::vector<int>& runs) {
   FitData data;
   data.continuous_recording = runs;
   data.recordings.resize(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    data.recordings[i].train_frames = 20 + static_cast<int>(i);
+    Recording& recording = data.recordings[i];
+    recording.train_frames = 20 + static_cast<int>(i);
+    recording.points.assign(recording.train_frames + 5, Points::Constant(3, 1, i));
   }
   return data;
 }
 
-int RunOf(const FitData& data, const Recording* recording) {
-  return data.continuous_recording[recording - data.recordings.data()];
+int RunOf(const FitData& data, const Recording& recording) {
+  return data.continuous_recording[static_cast<std::size_t>(recording.points[0](0, 0))];
 }
 
-void ExpectWithinFitFrames(const HeldBack& split) {
-  for (const Episode& episode : split.fit) {
-    EXPECT_GE(episode.frames, 2);
-    EXPECT_LE(episode.frames, episode.recording->train_frames);
+// Fit frames that are seen.
+std::set<int> Seen(const Recording& recording) {
+  std::set<int> seen;
+  for (int frame = 1; frame < recording.train_frames; ++frame) {
+    if (!std::isnan(recording.points[frame](0, 0))) seen.insert(frame);
   }
-  for (const ScoredFrames& scored : split.scored) {
-    EXPECT_GE(scored.first, 1);
-    EXPECT_LT(scored.first, scored.last);
-    EXPECT_LE(scored.last, scored.recording->train_frames);
-  }
+  return seen;
 }
 
 TEST(HoldBack, HoldsBackWholeRunsWhereThereAreFour) {
   const FitData data = OfRuns({0, 0, 1, 2, 2, 3, 4, 5, 6, 7, 7});
   const HeldBack split = HoldBack(data, 100);
-  std::set<int> fit, scored;
-  for (const Episode& episode : split.fit) {
-    fit.insert(RunOf(data, episode.recording));
-    EXPECT_EQ(episode.frames, episode.recording->train_frames);
+  std::set<int> fit, judged;
+  for (const Recording& recording : split.fit) {
+    fit.insert(RunOf(data, recording));
+    EXPECT_EQ(Seen(recording).size(), recording.train_frames - 1u);
   }
-  for (const ScoredFrames& frames : split.scored) {
-    scored.insert(RunOf(data, frames.recording));
-    EXPECT_EQ(frames.first, 1);
-    EXPECT_EQ(frames.last, frames.recording->train_frames);
+  for (const HeldBack::Judged& by : split.judged) {
+    judged.insert(RunOf(data, *by.whole));
+    EXPECT_EQ(Seen(by.held_back), Seen(*by.whole));
   }
-  EXPECT_EQ(scored.size(), 2u);  // a quarter of 8
+  EXPECT_EQ(judged.size(), 2u);  // a quarter of 8
   EXPECT_EQ(fit.size(), 6u);
-  for (int run : scored) EXPECT_FALSE(fit.contains(run)) << run;
-  EXPECT_EQ(split.fit.size() + split.scored.size(), data.recordings.size());
-  ExpectWithinFitFrames(split);
+  for (int run : judged) EXPECT_FALSE(fit.contains(run)) << run;
+  EXPECT_EQ(split.fit.size() + split.judged.size(), data.recordings.size());
 }
 
 TEST(HoldBack, FourRunsAreEnough) {
-  const HeldBack split = HoldBack(OfRuns({3, 5, 8, 9}), 100);
-  EXPECT_EQ(split.scored.size(), 1u);
+  const FitData data = OfRuns({3, 5, 8, 9});
+  const HeldBack split = HoldBack(data, 100);
+  EXPECT_EQ(split.judged.size(), 1u);
   EXPECT_EQ(split.fit.size(), 3u);
 }
 
-TEST(HoldBack, HoldsBackTheLastQuarterOfFewerRuns) {
+TEST(HoldBack, HoldsBackTwoEighthsOfFewerRuns) {
   const FitData data = OfRuns({0, 0, 1, 1, 2, 2});
   const HeldBack split = HoldBack(data, 100);
   ASSERT_EQ(split.fit.size(), data.recordings.size());
-  ASSERT_EQ(split.scored.size(), data.recordings.size());
+  ASSERT_EQ(split.judged.size(), data.recordings.size());
   for (std::size_t i = 0; i < split.fit.size(); ++i) {
-    EXPECT_EQ(split.fit[i].recording, split.scored[i].recording);
-    EXPECT_EQ(split.scored[i].first, split.fit[i].frames);
-    EXPECT_EQ(split.scored[i].last, data.recordings[i].train_frames);
-    EXPECT_NEAR(split.fit[i].frames, 0.75 * data.recordings[i].train_frames, 1);
+    const std::set<int> fit = Seen(split.fit[i]), held = Seen(split.judged[i].held_back);
+    const int last = data.recordings[i].train_frames - 1;
+    EXPECT_EQ(split.judged[i].whole, &data.recordings[i]);
+    EXPECT_EQ(fit.size() + held.size(), static_cast<std::size_t>(last));
+    for (int frame : held) EXPECT_FALSE(fit.contains(frame)) << frame;
+    EXPECT_NEAR(static_cast<double>(held.size()), 0.25 * last, 2);
+    EXPECT_TRUE(held.contains(last));  // the end, and frames in the middle:
+    EXPECT_LT(*held.begin(), 0.55 * last);
+    EXPECT_GT(*fit.rbegin(), 0.8 * last);
+    EXPECT_FALSE(std::isnan(split.fit[i].points[0](0, 0)));
   }
 }
 
-TEST(HoldBack, NeverPassesTheFitFramesOfShortRecordings) {
-  for (int frames = 2; frames < 10; ++frames) {
+TEST(HoldBack, LeavesSomethingOnBothSidesOfShortRecordings) {
+  for (int frames = 2; frames < 20; ++frames) {
     FitData data = OfRuns({0});
     data.recordings[0].train_frames = frames;
-    ExpectWithinFitFrames(HoldBack(data, 100));
+    const HeldBack split = HoldBack(data, 100);
+    EXPECT_FALSE(Seen(split.fit[0]).empty()) << frames;
+    EXPECT_FALSE(Seen(split.judged[0].held_back).empty()) << frames;
+    ASSERT_EQ(split.FitEpisodes().size(), 1u);
+    EXPECT_EQ(split.FitEpisodes()[0].recording, split.fit.data());
+    EXPECT_EQ(split.FitEpisodes()[0].frames, frames);
   }
 }
 
 TEST(HoldBack, TakesAtMostAsManyRecordingsAsAsked) {
   const FitData data = OfRuns({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
   const HeldBack split = HoldBack(data, 2);
-  EXPECT_EQ(split.fit.size(), 2u);
-  EXPECT_EQ(split.scored.size(), 2u);
-  EXPECT_NE(split.fit[0].recording, split.fit[1].recording);
-  ExpectWithinFitFrames(split);
+  ASSERT_EQ(split.fit.size(), 2u);
+  EXPECT_EQ(split.judged.size(), 2u);
+  EXPECT_NE(RunOf(data, split.fit[0]), RunOf(data, split.fit[1]));
 }
 
 TEST(FitEpisodes, AreAllFitFramesOfRecordingsSpreadEvenly) {

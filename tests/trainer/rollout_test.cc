@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "tests/support/gradient_check.h"
@@ -21,7 +22,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 struct Case {
   Recording recording = SwungRope(6, kFrames);
   SpringMassSystem system = MakeStartSystem(recording, {});
-  RolloutOptions options{.substeps = kSubsteps, .growth_limit = kNever};
+  RolloutOptions options{.substeps = kSubsteps, .growth_limit = kNever, .observer = {}};
   std::vector<Points> weights;
 
   Case() {
@@ -73,6 +74,57 @@ TEST(Rollout, AdjointAgreesWithDifferences) {
   ExpectPasses(c, Each("rest length", adjoint.gradient.rest_length, &c.system.rest_length, 1e-4));
   ExpectPasses(c, Each("mass", adjoint.gradient.mass, &c.system.mass));
   ExpectPasses(c, {{"drag", &c.system.drag, 1e-2, adjoint.gradient.drag}});
+}
+
+// A measured motion that the body would not take by itself, a point unseen here and there.
+void MoveAway(Recording* recording) {
+  Random random(7);
+  for (int frame = 1; frame < recording->frame_count(); ++frame) {
+    recording->points[frame] += random.Box(recording->point_count(), 0.01);
+    recording->points[frame].col(frame % recording->point_count())[0] =
+        std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+TEST(Rollout, AdjointUnderAnObserverAgreesWithDifferences) {
+  Case c;
+  MoveAway(&c.recording);
+  c.options.observer.gain = 0.4;
+  const RolloutAdjoint adjoint = c.Run()->Adjoint(c.weights);
+  ExpectPasses(c, Each("stiffness", adjoint.gradient.stiffness, &c.system.stiffness));
+  ExpectPasses(c, Each("dashpot", adjoint.gradient.dashpot, &c.system.dashpot));
+  ExpectPasses(c, Each("mass", adjoint.gradient.mass, &c.system.mass));
+  ExpectPasses(c, {{"drag", &c.system.drag, 1e-2, adjoint.gradient.drag}});
+}
+
+TEST(Rollout, AnObserverKeepsNearWhatIsMeasured) {
+  Case c;
+  SpringMassSystem other = c.system;
+  other.stiffness *= 0.3;
+  MoveAs(other, true, &c.recording);
+  const auto distance = [&c] {
+    return (c.Run()->positions().back() - c.recording.points.back()).norm();
+  };
+  const double free = distance();
+  c.options.observer.gain = 0.5;
+  EXPECT_LT(distance(), 0.8 * free);
+}
+
+TEST(Rollout, AnObserverLeavesLaterAndUnseenFramesAlone) {
+  Case c;
+  const auto free = c.Run()->positions();
+  MoveAway(&c.recording);
+  EXPECT_EQ(c.Run()->positions(), free);  // no observer
+  c.options.observer = {.gain = 0.5, .frames = 3};
+  const auto followed = c.Run()->positions();
+  EXPECT_EQ(followed[1], free[1]);  // corrected after it
+  EXPECT_NE(followed[2], free[2]);
+  for (int frame = 3; frame < kFrames; ++frame) c.recording.points[frame].setConstant(1e3);
+  EXPECT_EQ(c.Run()->positions(), followed);
+  for (Points& points : c.recording.points) {
+    points.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  EXPECT_EQ(c.Run()->positions(), free);
 }
 
 TEST(Rollout, AdjointOfTheInitialVelocityAgreesWithDifferences) {
