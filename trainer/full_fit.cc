@@ -16,11 +16,11 @@ namespace {
 
 constexpr int kMostRecordings = 4;         // that common factors are fitted to
 constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
-constexpr int kStepsPerGain = 6;           // of common factors
-constexpr int kFirstSpringGain = 2;        // of kObserverGains
 constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
-constexpr int kGaussNewtonSteps = 15;  // with the last gain ...
-constexpr int kFollowedSteps = 3;      // ... and with each one before
+constexpr int kStepsPerGain = 6;       // of common factors
+constexpr int kFirstSpringGain = 3;    // of kObserverGains
+constexpr int kFollowedSteps = 3;      // of Gauss-Newton with each gain before the last ...
+constexpr int kGaussNewtonSteps = 15;  // ... and with that one
 constexpr double kSlow = 0.99;  // a step that lowers the mean square by less gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end Gauss-Newton
 constexpr int kAdamSteps = 200;
@@ -218,8 +218,13 @@ double FullFit::Progress() const {
     case Stage::kCommon:
       return 0.35 + 0.05 * state_.gain / (kLastGain + 1);
     case Stage::kGaussNewton:
-      return 0.4 + 0.1 * (state_.gain - kFirstSpringGain) +
-             0.25 * state_.iteration / GaussNewtonSteps();
+      if (state_.gain < kLastGain) {
+        return 0.4 + 0.1 *
+                         (state_.gain - kFirstSpringGain +
+                          static_cast<double>(state_.iteration) / kFollowedSteps) /
+                         (kLastGain - kFirstSpringGain);
+      }
+      return 0.5 + 0.35 * state_.iteration / GaussNewtonSteps();
     case Stage::kAdam:
       return 0.85 + 0.15 * state_.iteration / AdamSteps();
     case Stage::kDone:

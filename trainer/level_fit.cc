@@ -20,7 +20,9 @@ namespace {
 
 constexpr int kMostRecordings = 4;  // that common factors are fitted to
 constexpr int kMostSpringRecordings = 12;
-constexpr int kCommonSteps = 8;
+constexpr int kFirstGain = 1;  // of kObserverGains: a Galerkin projection is not far off
+constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
+constexpr int kStepsPerGain = 4;
 constexpr int kPatience = 5;  // epochs without gain on held-back frames
 constexpr int kGaussNewtonSteps = 6;
 constexpr int kConjugateGradientSteps = 12;
@@ -45,15 +47,17 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
       most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
       held_back_(HoldBack(data, kMostRecordings)),
       network_(network),
+      gain_(kFirstGain),
       common_(Eigen::VectorXd::Zero(CommonParameters().size())),
       weights_(weights),
       best_weights_(weights) {}
 
-LiftedMotion::Options LevelFit::MotionOptions(int threads) const {
+LiftedMotion::Options LevelFit::MotionOptions(int threads, double gain) const {
   LiftedMotion::Options motion;
   motion.rollout.single_precision = options_.single_precision;
   motion.rollout.controller_velocity = twin_.controller_velocity;
   motion.rollout.substeps = options_.substeps;
+  motion.rollout.observer.gain = gain;
   motion.most_substeps = most_substeps_;
   motion.threads = threads;
   return motion;
@@ -77,7 +81,8 @@ SpringMassSystem LevelFit::CorrectedSystem(const Eigen::VectorXd& weights) const
 void LevelFit::StepCommon() {
   const Parameters parameters = CommonParameters();
   // the differences run in parallel
-  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostRecordings), MotionOptions(1));
+  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostRecordings),
+                            MotionOptions(1, kObserverGains[gain_]));
   LevenbergMarquardtOptions options;
   options.threads = options_.threads;
   options.difference = HasGround() ? 1e-2 : 1e-3;
@@ -90,7 +95,10 @@ void LevelFit::StepCommon() {
   mean_square_ = state.mean_square > 0 ? state.mean_square
                                        : std::numeric_limits<double>::infinity();  // it diverges
   status_ = fmt::format("level {}, common factors: {:.3f} mm", level_, Millimetres(mean_square_));
-  if (++iteration_ < kCommonSteps && !state.converged) return;
+  if (++iteration_ < kStepsPerGain && !state.converged) return;
+  iteration_ = 0;
+  damping_ = 1e-2;
+  if (++gain_ <= kLastGain) return;
   if (options_.network.epochs > 0) {
     BeginNetwork();
   } else {
@@ -220,7 +228,7 @@ std::string LevelFit::Part() const {
 double LevelFit::Progress() const {
   switch (stage_) {
     case Stage::kCommon:
-      return 0.2 * iteration_ / kCommonSteps;
+      return 0.2 * (gain_ - kFirstGain) / (kLastGain - kFirstGain + 1);
     case Stage::kNetwork:
       return 0.2 + 0.2 * iteration_ / (options_.network.epochs * options_.network.updates);
     case Stage::kSprings:
@@ -234,13 +242,14 @@ double LevelFit::Progress() const {
 StateArrays LevelFit::Save() const {
   Eigen::VectorXd scalars(4);
   scalars << damping_, mean_square_, best_score_, rate_;
-  StateArrays arrays = {{"train/level/counters",
-                         StoreCounters({static_cast<int>(stage_), iteration_, best_iteration_})},
-                        {"train/level/scalars", StoreVector(scalars)},
-                        {"train/level/common", StoreVector(common_)},
-                        {"train/level/springs", StoreVector(springs_)},
-                        {"train/level/weights", StoreVector(weights_)},
-                        {"train/level/best_weights", StoreVector(best_weights_)}};
+  StateArrays arrays = {
+      {"train/level/counters",
+       StoreCounters({static_cast<int>(stage_), iteration_, best_iteration_, gain_})},
+      {"train/level/scalars", StoreVector(scalars)},
+      {"train/level/common", StoreVector(common_)},
+      {"train/level/springs", StoreVector(springs_)},
+      {"train/level/weights", StoreVector(weights_)},
+      {"train/level/best_weights", StoreVector(best_weights_)}};
   if (stage_ == Stage::kNetwork) {
     arrays["train/level/adam_mean"] = StoreVector(adam_mean_);
     arrays["train/level/adam_mean_square"] = StoreVector(adam_mean_square_);
@@ -249,10 +258,11 @@ StateArrays LevelFit::Save() const {
 }
 
 void LevelFit::Load(const StateArrays& state) {
-  const std::vector<int> counters = LoadCounters(state, "level/counters", 3);
+  const std::vector<int> counters = LoadCounters(state, "level/counters", 4);
   stage_ = static_cast<Stage>(counters[0]);
   iteration_ = counters[1];
   best_iteration_ = counters[2];
+  gain_ = counters[3];
   const Eigen::VectorXd scalars = LoadVector(state, "level/scalars", 4);
   damping_ = scalars[0];
   mean_square_ = scalars[1];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fit of the parameters of a coarse level, whose topology, masses and first values are a
 // Galerkin projection, to the measured points through the lift, in two stages:
-//   common   the same few factors for all springs (parameters.h), by Levenberg-Marquardt
+//   common   the same few factors for all springs (parameters.h), by Levenberg-Marquardt, under an
+//            observer whose gain falls to 0 (observer.h)
 //   springs  every spring's own stiffness, dashpot and rest length, by Gauss-Newton
 #ifndef PHYSPRING_TRAINER_LEVEL_FIT_H_
 #define PHYSPRING_TRAINER_LEVEL_FIT_H_
@@ -46,7 +47,7 @@ class LevelFit {
   enum class Stage { kCommon, kNetwork, kSprings, kDone };
 
   bool HasGround() const { return data_.recordings[0].ground.has_value(); }
-  LiftedMotion::Options MotionOptions(int threads) const;
+  LiftedMotion::Options MotionOptions(int threads, double gain = 0) const;
   Parameters CommonParameters() const;
   Parameters SpringParameters() const;
   SpringMassSystem CorrectedSystem(const Eigen::VectorXd& weights) const;
@@ -67,7 +68,8 @@ class LevelFit {
 
   // Everything that the next step depends on, besides data, options and the twin.
   Stage stage_ = Stage::kCommon;
-  int iteration_ = 0;  // of the stage
+  int iteration_ = 0;  // of the stage; of the common factors, with this gain
+  int gain_;           // of kObserverGains
   double damping_ = 1e-2;
   double mean_square_ = 0;  // of the residuals
   Eigen::VectorXd common_, springs_;

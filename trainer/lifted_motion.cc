@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trainer/parallel.h"
 #include "twin/hierarchy.h"
@@ -10,7 +11,7 @@
 namespace physpring {
 namespace {
 
-// What a rollout of the level's nodes needs of the recording.
+// What a rollout of the level's nodes, and an observer of it, needs of the recording.
 Recording ForNodes(const Twin& twin, int level, const Recording& recording) {
   Recording carried;
   carried.name = recording.name;
@@ -23,6 +24,12 @@ Recording ForNodes(const Twin& twin, int level, const Recording& recording) {
   carried.start.resize(3, nodes.cols() + controllers);
   carried.start << nodes, recording.start.rightCols(controllers);
   carried.velocity = AverageOverMembers(twin, level, recording.velocity);
+  // measured where all of a node's members are
+  for (const Points& measured : recording.points) {
+    Points all = Points::Constant(3, particles, std::numeric_limits<double>::quiet_NaN());
+    all.leftCols(measured.cols()) = measured;
+    carried.points.push_back(AverageOverMembers(twin, level, all));
+  }
   return carried;
 }
 
