@@ -29,7 +29,7 @@ struct RolloutOptions {
   bool controller_velocity = true;
   int substeps = 0;  // a frame, >= 1
   double growth_limit = 1e3;
-  Observer observer;
+  Observer observer = {};
 };
 
 struct RolloutAdjoint {

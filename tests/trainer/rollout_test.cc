@@ -22,7 +22,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 struct Case {
   Recording recording = SwungRope(6, kFrames);
   SpringMassSystem system = MakeStartSystem(recording, {});
-  RolloutOptions options{.substeps = kSubsteps, .growth_limit = kNever, .observer = {}};
+  RolloutOptions options{.substeps = kSubsteps, .growth_limit = kNever};
   std::vector<Points> weights;
 
   Case() {
