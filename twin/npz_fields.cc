@@ -91,16 +91,19 @@ std::vector<Points> NpzFields::Frames(const std::string& name, const std::string
 }
 
 std::vector<int> NpzFields::Ints(const std::string& name, const Extents& shape) {
+  const NpzArray& array = GetOfShape(name, shape);
+  if (array.type == "|b1") Fail(name, "has the type '|b1', expected whole numbers");
   try {
-    return GetOfShape(name, shape).ToInts();
+    return array.ToInts();
   } catch (const Error& error) {
     Fail(name, error.what());
   }
 }
 
 std::string NpzFields::Text(const std::string& name) const {
+  const NpzArray& array = Get(name);
   try {
-    return Get(name).ToText();
+    return array.ToText();
   } catch (const Error& error) {
     Fail(name, error.what());
   }

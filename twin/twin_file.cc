@@ -190,22 +190,36 @@ void ExpectOnto(const NpzFields& fields, const std::string& name,
   fields.Fail(name, fmt::format("gives nothing to node {}", unused - used.begin()));
 }
 
+// Reads where the nodes are and which of them springs join: these say how many there are of each,
+// and every other list of the level is compared with that.
+void ReadShape(NpzFields* fields, const std::string& prefix, int controllers,
+               SpringMassSystem* system) {
+  const std::string position = prefix + "position";
+  system->position = fields->Positions(position, "nodes+controllers");
+  const std::size_t count = fields->Extent("nodes+controllers");
+  if (count <= Size(controllers)) {
+    fields->Fail(position, fmt::format("holds {} places, {} of them controllers, expected a node "
+                                       "or more",
+                                       count, controllers));
+  }
+  fields->SetExtent("nodes", count - Size(controllers));
+  system->controllers = controllers;
+  const std::vector<int> ends = fields->Ints(prefix + "springs", {"springs", "2"});
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    system->springs.push_back({ends[i], ends[i + 1]});
+  }
+}
+
 TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, int controllers,
                     int nodes_below) {
   const std::string prefix = LevelPrefix(n);
   TwinLevel level;
+  ReadShape(&fields, prefix, controllers, &level.system);
   VisitVectors(level, [&](const char* name, const char* size, Eigen::VectorXd& values) {
     values = fields.Vector(prefix + name, size);
   });
   VisitScalars(level,
                [&](const char* name, double& value) { value = fields.Scalar(prefix + name); });
-  fields.SetExtent("nodes+controllers", fields.Extent("nodes") + Size(controllers));
-  level.system.position = fields.Positions(prefix + "position", "nodes+controllers");
-  level.system.controllers = controllers;
-  const std::vector<int> ends = fields.Ints(prefix + "springs", {"springs", "2"});
-  for (std::size_t i = 0; i < ends.size(); i += 2) {
-    level.system.springs.push_back({ends[i], ends[i + 1]});
-  }
   if (fields.Has(prefix + "cone")) {
     const std::string cone = fields.Text(prefix + "cone");
     if (cone != kPyramidal) {
@@ -218,7 +232,8 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
         EffectsFromJson(fields.Text(prefix + "effects"), where + ": array 'effects'");
   }
   level.system.Validate(where);
-  if (ends.empty()) fields.Fail(prefix + "springs", "holds no spring, expected one or more");
+  if (level.system.springs.empty())
+    fields.Fail(prefix + "springs", "holds no spring, expected one or more");
 
   level.substeps_per_second = fields.Ints(prefix + "substeps_per_second", {})[0];
   if (level.substeps_per_second < 1) {

@@ -65,6 +65,8 @@ TEST(Messages, NameAttributeAndValue) {
       {"object_restitution", "2", "object_restitution is 2, expected 0 to 1"},
       {"object_friction", "3", "object_friction is 3, expected 0 to 2"},
       {"cone", "round", "attribute 'cone' is 'round', expected elliptic or pyramidal"},
+      // as MuJoCo, which takes no blanks around its keywords
+      {"cone", " pyramidal", "attribute 'cone' is ' pyramidal', expected elliptic or pyramidal"},
       {"cone", "elliptic", ""},
       {"effects", "[]", ""},
       {"substep", "1e-300",

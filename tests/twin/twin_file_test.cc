@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include "tests/support/file_damage.h"
 #include "tests/support/temporary_folder.h"
@@ -142,6 +143,10 @@ TEST_F(TwinFile, KeepsTheConeOfFriction) {
   EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.cone, FrictionCone::kPyramidal);
   arrays_["level0/cone"] = NpzArray::Text("round");
   EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'level0/cone' holds 'round', expected pyramidal");
+  // as MuJoCo, which takes no blanks around its keywords
+  arrays_["level0/cone"] = NpzArray::Text(" pyramidal");
+  EXPECT_EQ(ErrorOfChanged(),
+            path_ + ": array 'level0/cone' holds ' pyramidal', expected pyramidal");
 }
 
 TEST_F(TwinFile, WritesTheSameBytesAgain) {
@@ -175,6 +180,49 @@ TEST_F(TwinFile, EveryArrayHasOneShape) {
   }
 }
 
+// The array that is too short is the one that is named, once.
+TEST_F(TwinFile, ListsAreAsLongAsThereAreNodesAndSprings) {
+  const std::vector<std::pair<const char*, const char*>> lists{
+      {"mass", "nodes"},          {"contact_radius", "nodes"}, {"stiffness", "springs"},
+      {"rest_length", "springs"}, {"dashpot", "springs"},
+  };
+  const Npz sound = arrays_;
+  for (const auto& [name, counted] : lists) {
+    arrays_ = sound;
+    arrays_[std::string("level0/") + name] = Vector({1, 1});
+    EXPECT_EQ(
+        ErrorOfChanged(),
+        fmt::format("{0}: array 'level0/{1}' has the shape (2,), expected ({2},) with {2} = 3",
+                    path_, name, counted));
+  }
+}
+
+TEST_F(TwinFile, NamesFileAndArrayOnceWhereTheTypeIsWrong) {
+  const std::uint8_t yes = 1;
+  const NpzArray flag{"|b1", {}, {yes}};
+  const std::vector<std::tuple<const char*, NpzArray, const char*>> cases{
+      {"level0/cone", Scalar(1),
+       "has the type '<f8' and the shape (), expected text: '|u1' and (n,)"},
+      {"level0/effects", Scalar(1),
+       "has the type '<f8' and the shape (), expected text: '|u1' and (n,)"},
+      {"level0/springs", Vector({0, 1}), "has the shape (2,), expected (springs, 2)"},
+      {"level0/substeps_per_second", Vector({9}), "has the shape (1,), expected ()"},
+      {"level0/substeps_per_second", Scalar(0.5), "holds 0.5, expected whole numbers"},
+      {"level0/substeps_per_second", flag, "has the type '|b1', expected whole numbers"},
+      {"level1/assignment", Scalar(0),
+       "has the shape (), expected (nodes below,) with nodes below = 3"},
+  };
+  const Npz sound = arrays_;
+  for (const auto& [name, array, message] : cases) {
+    arrays_ = sound;
+    arrays_[name] = array;
+    EXPECT_EQ(ErrorOfChanged(), fmt::format("{}: array '{}' {}", path_, name, message));
+  }
+  arrays_ = sound;
+  arrays_.erase("meta");
+  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'meta' is missing");
+}
+
 TEST_F(TwinFile, EveryArrayHoldsFiniteNumbers) {
   const Npz sound = arrays_;
   for (const auto& [name, array] : sound) {
@@ -204,7 +252,6 @@ TEST_F(TwinFile, RefusesWhatDisagrees) {
       {"level1/assignment", Ints({0, 1}),
        "shape (2,), expected (nodes below,) with nodes below = 3"},
       {"level0/mass", Vector({1, 0, 1}), "level 0: mass[1] is 0, expected more than 0"},
-      {"level0/mass", Vector({1, 1}), "array 'level0/contact_radius' has the shape (3,)"},
       {"level1/stiffness", Vector({1, -1}), "level 1: stiffness[1] is -1, expected 0 or more"},
       {"level1/rest_length", Vector({0, 1}), "level 1: rest_length[0] is 0, expected more than 0"},
       {"level1/dashpot", Vector({-1, 1}), "level 1: dashpot[0] is -1"},
@@ -239,7 +286,7 @@ TEST_F(TwinFile, RefusesImpossibleSprings) {
       {{0, 1, 1, 2, 2, -1}, "springs[2] joins -1 and 2"},
       {{0, 1, 1, 2, 2, 2}, "springs[2] joins 2 and 2, expected two different nodes"},
       {{0, 1, 1, 2, 1, 0}, "springs joins 0 and 1 twice"},
-      {{0, 1, 1, 2}, "array 'level0/springs' has the shape (2, 2)"},
+      {{0, 1, 1, 2}, "'level0/stiffness' has the shape (3,), expected (springs,) with springs = 2"},
   };
   for (const auto& [ends, message] : cases) {
     arrays_["level0/springs"] = NpzArray::Ints({ends.size() / 2, 2}, ends.data());
@@ -256,11 +303,14 @@ TEST_F(TwinFile, RefusesAnotherFormatOrVersion) {
       {"physpring twin", "other", "key 'format' is not 'physpring twin'"},
       {"\"seed\"", "\"sead\"", "key 'sead' is not known"},
       {"\"levels\": 2", "\"levels\": 0", "key 'levels' holds 0"},
-      {"\"levels\": 2", "\"levels\": 3", "array 'level2/mass' is missing"},
+      {"\"levels\": 2", "\"levels\": 3", "array 'level2/position' is missing"},
       {"\"levels\": 2", "\"levels\": -2", "key 'levels' holds '-2', expected a whole number"},
       {"\"points\": 2", "\"points\": 3", "counts 3 points and 1 interior particles"},
       {"\"points\": 2", "\"points\": 99999999999", "expected a number below 2^31"},
-      {"\"controllers\": 1", "\"controllers\": 2", "'level0/position' has the shape (4, 3)"},
+      {"\"controllers\": 1", "\"controllers\": 2",
+       "'level0/mass' has the shape (3,), expected (nodes,) with nodes = 2"},
+      {"\"controllers\": 1", "\"controllers\": 4",
+       "'level0/position' holds 4 places, 4 of them controllers, expected a node or more"},
       {"\"controller_velocity\": false", "\"controller_velocity\": 0", "expected true or false"},
       {"0123456789abcdef", "0123", "'recordings[0].hash' is not 16 hexadecimal digits"},
       {"\"train_frames\"", "\"frames\"", "key 'recordings[0].frames' is not known"},
