@@ -149,7 +149,8 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
                    "surface to draw (OBJ, PLY, STL, GLB), where the recording's points are; "
                    "default: made from the points")
       ->type_name("FILE");
-  command->add_option("--name", options->name, "prefix of all names; default: the twin's name");
+  command->add_option("--name", options->name, "prefix of all names; default: the twin's name")
+      ->check(NotEmpty());
 }
 
 }  // namespace

@@ -76,12 +76,15 @@ TEST_F(Export, BadUsageIsToldAsSuch) {
                                                     {"--level", "-1"},
                                                     {"--level", "first"},
                                                     {"--flexes", "0"},
-                                                    {"--timestep", "0"}}) {
+                                                    {"--timestep", "0"},
+                                                    {"--name", ""}}) {
     const ProgramResult result = Run(arguments);
     EXPECT_EQ(result.status, 2) << arguments[0];
     EXPECT_NE(result.errors.find(arguments[0]), std::string::npos) << result.errors;
   }
   EXPECT_FALSE(Wrote());
+  EXPECT_EQ(Run({"--name", ""}).errors,
+            "physpring export: --name: takes a name, not '' (see physpring export --help)\n");
 }
 
 // A box around the small twin's particles, 20 mm larger on all sides.
