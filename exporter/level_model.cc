@@ -19,16 +19,18 @@ void AddHeadComment(const LevelPlan& plan, XmlElement* mujoco) {
                                  "Written by physpring export " PHYSPRING_VERSION ".",
                                  plan.level, system.node_count(), system.spring_count(),
                                  system.controllers));
-  AddComment(mujoco, fmt::format("Largest stable time step of the springs: {:.4g} s. The drag of "
-                                 "{:.4g} 1/s is joint damping, exact at a time step of {:.4g} s.",
-                                 plan.critical_timestep, system.drag, plan.substep));
+  const bool of_springs = plan.critical_timestep <= plan.largest_timestep;
+  AddComment(mujoco,
+             fmt::format("Largest stable time step of the {}: {:.4g} s. The drag of {:.4g} 1/s is "
+                         "joint damping, exact at a time step of {:.4g} s.",
+                         of_springs ? "springs" : "controllers on slide joints",
+                         plan.StableTimestep(), system.drag, plan.substep));
 }
 
 void AddNumbers(const LevelPlan& plan, XmlElement* mujoco) {
   XmlElement* custom = AddElement(mujoco, "custom");
   AddElement(custom, "numeric",
-             {{"name", plan.name + "_critical_timestep"},
-              {"data", Number(std::min(plan.critical_timestep, plan.largest_timestep))}});
+             {{"name", plan.name + "_critical_timestep"}, {"data", Number(plan.StableTimestep())}});
   AddElement(custom, "numeric", {{"name", plan.name + "_substep"}, {"data", Number(plan.substep)}});
 }
 

@@ -3,6 +3,7 @@
 #ifndef PHYSPRING_EXPORTER_LEVEL_PLAN_H_
 #define PHYSPRING_EXPORTER_LEVEL_PLAN_H_
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct LevelPlan {
   bool WantsEllipticCone() const {
     return contact == ContactKind::kMujoco && system().contact.cone == FrictionCone::kElliptic;
   }
+  // s: the least of both bounds.
+  double StableTimestep() const { return std::min(critical_timestep, largest_timestep); }
   // "0.2 ms", or "any".
   std::string LargestTimestep() const;
   // Name of the body and of the site of node or controller `column`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `physpring export` writes, as a MuJoCo user meets it: it compiles and runs without a
 // warning, in its own scene and in others.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include "rollout/mujoco_log.h"
 #include "tests/support/exported_folder.h"
 #include "tests/support/small_twin.h"
+#include "twin/atomic_file.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
 
@@ -145,6 +147,23 @@ TEST(ExportScene, HoldsWhatTheTwinHolds) {
   const int numeric = Id(model, mjOBJ_NUMERIC, "block_critical_timestep");
   EXPECT_EQ(model->numeric_data[model->numeric_adr[numeric]],
             folder.result.levels[0].plan.largest_timestep);
+}
+
+// What people read in the head of a level is what programs read in its number.
+TEST(ExportScene, HeadTellsTheBoundOfTheNumber) {
+  ExportOptions options;
+  for (const ControllerKind controllers : {ControllerKind::kMocap, ControllerKind::kSlide}) {
+    options.controllers = controllers;
+    const ExportedFolder folder(SmallTwin(1), options);
+    const ModelPtr model = folder.Load("scene.xml");
+    const int numeric = Id(model, mjOBJ_NUMERIC, "block_critical_timestep");
+    const std::string expected = fmt::format(
+        "Largest stable time step of the {}: {:.4g} s. ",
+        controllers == ControllerKind::kMocap ? "springs" : "controllers on slide joints",
+        model->numeric_data[model->numeric_adr[numeric]]);
+    const std::string level = ReadFile(folder.File("level0.xml"));
+    EXPECT_NE(level.find(expected), std::string::npos) << expected << level.substr(0, 400);
+  }
 }
 
 TEST(ExportScene, AsksForTheConeOfMujocosContacts) {
