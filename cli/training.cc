@@ -39,6 +39,14 @@ struct TrackMean {
   }
 };
 
+// To the last part or, if it is another one, to a new one; a step between two parts has no name.
+void AddTime(const std::string& part, double seconds,
+             std::vector<std::pair<std::string, double>>* parts) {
+  if (part.empty()) return;
+  if (parts->empty() || parts->back().first != part) parts->emplace_back(part, 0);
+  parts->back().second += seconds;
+}
+
 }  // namespace
 
 TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double interval) {
@@ -58,8 +66,7 @@ TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double int
     const std::string part = fitter->Part();
     run.finished = !fitter->Step();
     if (run.finished) break;
-    if (run.parts.empty() || run.parts.back().first != part) run.parts.emplace_back(part, 0);
-    run.parts.back().second += step.seconds();
+    AddTime(part, step.seconds(), &run.parts);
     spdlog::info("{:5.1f} %  {}", 100 * fitter->Progress(), fitter->Status());
     progress.Show(fitter->Progress(), fitter->Status());
     if (since_checkpoint.seconds() < interval) continue;

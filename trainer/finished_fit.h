@@ -18,6 +18,7 @@ class FinishedFit : public Fitter {
   bool Step() override { return false; }
   double Progress() const override { return 1; }
   std::string Status() const override { return "level 0 as it was"; }
+  std::string Part() const override { return ""; }
   std::map<std::string, NpzArray> Save() const override { return {}; }
   void Load(const std::map<std::string, NpzArray>& /*state*/) override {}
   Twin Result() const override { return twin_; }

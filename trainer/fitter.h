@@ -33,7 +33,7 @@ class Fitter {
   virtual double Progress() const = 0;
   virtual std::string Status() const = 0;
 
-  // What the next step is part of, for a report of where the time went.
+  // What the next step is part of, for a report of where the time went; empty: of none.
   virtual std::string Part() const { return "fitting"; }
 
   // The state between two steps, as arrays for Twin::training_state, and back. Load throws Error if

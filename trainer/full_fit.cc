@@ -246,7 +246,7 @@ std::string FullFit::Part() const {
     case Stage::kDone:
       break;
   }
-  return "nothing";
+  return "";
 }
 
 std::map<std::string, NpzArray> FullFit::Save() const {

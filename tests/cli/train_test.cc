@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
 #include <thread>
 
 #include "tests/support/program.h"
@@ -66,6 +67,16 @@ class Train : public testing::Test {
   std::string rope_ = folder_.File("rope.npz"), other_ = folder_.File("other.npz");
   std::string twin_ = folder_.File("rope.twin.npz"), output_ = folder_.File("output");
 };
+
+// "a, b" of a report "time: 3 s, a 1 s, b 2 s".
+std::string PartsOf(const ProgramResult& result) {
+  EXPECT_EQ(result.status, 0) << result.errors;
+  const std::size_t start = result.output.find("time: ");
+  if (start == std::string::npos) return result.output;
+  const std::string line = result.output.substr(start, result.output.find('\n', start) - start);
+  static const std::regex duration("^time: [^,]*, | [0-9][0-9.]* (s|min|h)[^,]*");
+  return std::regex_replace(line, duration, "");
+}
 
 class TrainBy : public Train, public testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, TrainBy, testing::Values("full", "two-stage"),
@@ -277,6 +288,22 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--neighbours", "8", "--method", "two-stage"}, "--neighbours: is chosen by two-stage");
   refused({"--self-collision"}, "--self-collision: is of --method two-stage");
   refused({"--resume", "--force"}, "--resume excludes --force");
+}
+
+// The report names what took the time: no step that did nothing is a part of it.
+TEST_F(Train, ReportsWhereTheTimeWent) {
+  const Words levels{"--levels",    "2",      "--ratios",         "0.5",
+                     "--reduction", "random", "--network-epochs", "0"};
+  const std::string coarse =
+      "reduction, common factors of coarse levels, single springs of coarse levels, writing "
+      "checkpoints";
+  EXPECT_EQ(PartsOf(RunProgram(Short("full") + levels)),
+            "choosing the model, common factors, single springs (Gauss-Newton), single springs "
+            "(Adam), " +
+                coarse);
+  const std::string from = folder_.File("from.twin.npz");
+  std::filesystem::rename(twin_, from);
+  EXPECT_EQ(PartsOf(RunProgram(Short("full") + levels + Words{"--from", from})), coarse);
 }
 
 TEST_F(Train, LogsEveryStep) {
