@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exported levels with the engine plugin: they compile and run without a warning, alone and
 // attached twice, and move as in the trainer.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
 
 #include "rollout/mujoco_log.h"
 #include "tests/support/exported_folder.h"
 #include "tests/support/random_system.h"
 #include "tests/support/small_twin.h"
+#include "twin/atomic_file.h"
 #include "twin/effects/registry.h"
+#include "twin/free_twin.h"
 #include "twin/simulator.h"
 
 namespace physpring {
@@ -61,6 +67,48 @@ TEST_F(ExportPlugin, AttachesTwice) {
   const int b = mj_name2id(model.get(), mjOBJ_BODY, "b_block_7");
   EXPECT_LT(data->xpos[3 * a + 2], model->body_pos[3 * a + 2] - 1e-3);  // it sags
   EXPECT_NEAR(data->xpos[3 * a + 2], data->xpos[3 * b + 2], 1e-9);
+}
+
+// The height of the lowest node of a twin that falls on another one, after 0.4 s, m. Geoms of the
+// twins' nodes have the attributes `lower` and `upper`.
+double HeightOfFallen(const ExportedFolder& folder, const std::string& lower,
+                      const std::string& upper) {
+  const std::string level = ReadFile(folder.File("level0.xml")), bits = R"(contype="0")";
+  const auto write = [&](const char* name, const std::string& attributes) {
+    std::string changed = level;
+    std::ofstream(folder.File(name)) << changed.replace(level.find(bits), bits.size(), attributes);
+  };
+  write("lower.xml", lower);
+  write("upper.xml", upper);
+  const ModelPtr model = folder.LoadText(R"(
+    <mujoco>
+      <option timestep="0.0005" integrator="Euler"/>
+      <asset><model name="lower" file="lower.xml"/><model name="upper" file="upper.xml"/></asset>
+      <worldbody>
+        <geom type="plane" size="0 0 1"/>
+        <frame pos="0 0 0.013"><attach model="lower" prefix="a_"/></frame>
+        <frame pos="0 0 0.07"><attach model="upper" prefix="b_"/></frame>
+      </worldbody>
+    </mujoco>)");
+  const DataPtr data = MakeData(*model);
+  for (int step = 0; step < 800; ++step) Step(*model, data.get());
+  double lowest = 1;
+  for (int i = 0; i < 40; ++i) {
+    const int body = mj_name2id(model.get(), mjOBJ_BODY, fmt::format("b_block_{}", i).c_str());
+    lowest = std::min(lowest, data->xpos[3 * body + 2]);
+  }
+  return lowest;
+}
+
+// As docs/export.md tells: bits of their own let twins collide with each other, else they do not.
+TEST_F(ExportPlugin, TwinsCollideWhereTheirBitsSaySo) {
+  const double radius = 0.012;  // m: no gaps between the particles, which are 20 mm apart
+  Twin twin = WithoutControllers(SmallTwin(1));
+  twin.levels[0].system.contact_radius.setConstant(radius);
+  const ExportedFolder folder(twin, Options(SpringKind::kPlugin, 0));
+  EXPECT_NEAR(HeightOfFallen(folder, R"(contype="0")", R"(contype="0")"), radius, 2e-3);
+  // on the other's upper layer, 32 mm high, but for what the soft springs give way
+  EXPECT_GT(HeightOfFallen(folder, R"(contype="2")", R"(contype="0" conaffinity="3")"), 0.03);
 }
 
 // The greatest distance of a node from where the trainer has it, after 20 frames of 5 steps with
