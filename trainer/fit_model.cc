@@ -133,8 +133,9 @@ TrackProblem::Options FollowOptions(const Recording& recording, const Candidate&
   problem.rollout.controller_velocity = candidate.controller_velocity;
   problem.rollout.substeps = options.substeps;
   problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / recording.fps));
-  // contacts make residuals jump: differences are then taken over longer steps
-  problem.difference = recording.ground ? 1e-3 : 1e-5;
+  // contacts make residuals jump, and floats are coarse: differences are then taken over longer
+  // steps
+  problem.difference = recording.ground || options.single_precision ? 1e-3 : 1e-5;
   problem.threads = options.threads;
   return problem;
 }

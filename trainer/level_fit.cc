@@ -182,7 +182,7 @@ void LevelFit::StepSprings() {
   motion_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
   const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostSpringRecordings),
                             motion_options);
-  LiftedProblem problem(parameters, motion, HasGround() ? 1e-3 : 1e-5);
+  LiftedProblem problem(parameters, motion, HasGround() || options_.single_precision ? 1e-3 : 1e-5);
   const GaussNewtonState before{springs_, damping_, mean_square_, false};
   GaussNewtonOptions options = SpringPrior(parameters);
   options.conjugate_gradient_steps = kConjugateGradientSteps;

@@ -59,6 +59,7 @@ SpringMassSystem ChosenModel::System(const Recording& recording) const {
 
 ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
     : data_(data), options_(options), held_back_(HoldBack(data, kMostRecordings)) {
+  options_.single_precision = true;
   for (const Candidate& candidate : Candidates(first(), options)) {
     contenders_.push_back({{candidate, 0, {}, {}}, kInfinity});
   }

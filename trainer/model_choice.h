@@ -33,7 +33,7 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
 
 class ModelChoice {
  public:
-  // Keeps references to `data` and `options`.
+  // Keeps a reference to `data`. Computes in single precision: for a choice that is enough.
   ModelChoice(const FitData& data, const TrainOptions& options);
 
   // One step of an optimiser. False when the choice is made.
@@ -65,7 +65,7 @@ class ModelChoice {
   double TrackError(const SpringMassSystem& system, const Candidate& candidate) const;
 
   const FitData& data_;
-  const TrainOptions& options_;
+  TrainOptions options_;
   HeldBack held_back_;
   std::vector<Contender> contenders_;
   std::vector<int> round_order_;  // the contenders in the round: indices, ascending
