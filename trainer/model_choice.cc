@@ -17,13 +17,14 @@ namespace physpring {
 namespace {
 
 constexpr int kMostRecordings = 4;  // that start values are sought on
-// Of each round: what is fitted under which of kObserverGains, and how many go on from it.
+// Of each round: what is fitted under which of kObserverGains, and how many go on from it with
+// either treatment of the controllers' velocity (what that is worth shows with single springs).
 struct Round {
   int first_gain, last_gain;
   int most_steps;  // with each gain
-  int most_left;
+  int left_of_each;
 };
-constexpr std::array<Round, 3> kRounds = {{{0, 1, 5, 6}, {2, 3, 6, 2}, {3, 3, 4, 1}}};
+constexpr std::array<Round, 3> kRounds = {{{0, 1, 5, 3}, {2, 3, 6, 1}, {3, 3, 6, 1}}};
 constexpr int kRoundCount = static_cast<int>(kRounds.size());
 constexpr int kConjugateGradientSteps = 20;
 // Start systems tried, in sub-steps a frame, and (on a ground) changes of the friction's factor.
@@ -180,7 +181,15 @@ void ModelChoice::BeginRound() {
   const auto better = [&](int i, int j) { return contenders_[i].score < contenders_[j].score; };
   std::vector<int> next = round_order_;
   std::stable_sort(next.begin(), next.end(), better);
-  next.resize(std::min<std::size_t>(next.size(), kRounds[round_ - 1].most_left));
+  if (round_ == kRoundCount) {
+    next.resize(1);
+  } else {
+    std::array<int, 2> left = {};  // with and without velocity
+    std::erase_if(next, [&](int i) {
+      const bool velocity = contenders_[i].model.candidate.controller_velocity;
+      return ++left[velocity ? 0 : 1] > kRounds[round_ - 1].left_of_each;
+    });
+  }
   std::erase_if(next, [&](int i) { return !std::isfinite(contenders_[i].score); });
   if (next.empty()) {
     throw Error(fmt::format(

@@ -2,8 +2,9 @@
 // The choice of a model (fit_model.h) and of the start values of its common factors, on held-back
 // frames. In three rounds, under an observer whose gain falls (observer.h):
 //   far      each candidate's factors are fitted with the two highest gains, from the best of a few
-//            start stiffnesses and frictions; six go on
-//   near     those are fitted with lower gains; two go on
+//            start stiffnesses and frictions; three with and three without the controllers'
+//            velocity go on
+//   near     those are fitted with lower gains; the best with and without velocity go on
 //   springs  those are fitted a few steps further, spring by spring, with the same low gain
 #ifndef PHYSPRING_TRAINER_MODEL_CHOICE_H_
 #define PHYSPRING_TRAINER_MODEL_CHOICE_H_
