@@ -20,7 +20,7 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-constexpr int kSpringSteps = 10;  // of Gauss-Newton, after an effect is found
+constexpr int kSpringSteps = 5;  // of Gauss-Newton with each gain, after an effect is found
 constexpr int kDraws = 2000;
 constexpr double kBlock = 0.2;  // s, of the bootstrap
 // Held-out errors, times the noise floor: below the first, nothing is missing; below the second,
@@ -53,10 +53,12 @@ double NoiseFloor(const std::vector<SplitRecording>& splits) {
   return TrackNoiseFloor(MeasurementNoise(all));
 }
 
-std::vector<const Effect*> EffectsFor(const Recording& recording) {
+std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMassSystem& body) {
+  const bool solid = IsSolid(body);
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {
     if (effect->name() == "ground_contact" && !recording.ground) continue;
+    if (solid && effect->name().find("bend") != std::string::npos) continue;
     effects.push_back(effect);
   }
   return effects;
@@ -96,7 +98,7 @@ class Loop {
         noise_floor_(noise_floor),
         trained_on_(trained_on),
         options_(options),
-        effects_(EffectsFor(*fitting->recordings()[0].recording)),
+        effects_(EffectsFor(*fitting->recordings()[0].recording, fitting->bodies()[0].base)),
         block_(static_cast<int>(std::ceil(kBlock * fitting->recordings()[0].recording->fps))) {}
 
   int block() const { return block_; }
@@ -105,20 +107,26 @@ class Loop {
   const EffectFit& common() const { return common_; }
   const std::vector<EffectCandidate>& candidates() const { return candidates_; }
 
-  // The refit without a new effect; false if the model diverges.
-  bool Begin(const std::vector<EffectValues>& known) {
+  // The refit of common factors without a new effect; false if the model diverges.
+  bool FitCommon(const std::vector<EffectValues>& known) {
     Report(0, "refitting the model without any new effect");
     bodies_ = FitBodies(fitting_, known);
     const auto base = FitBest(*fitting_, bodies_);
     if (!base) return false;
     common_ = accepted_ = *base;
-    if (trained_on_) fitting_->RefitSprings(kSpringSteps, &accepted_);
     return true;
   }
 
   // A fit without a new effect from elsewhere: taken if it predicts the held-out frames better.
   void Offer(const EffectFit& fit) {
     if (fit.track.held < accepted_.track.held) accepted_ = fit;
+  }
+
+  // Single springs, too, unless those of the twin were better.
+  void FitSprings() {
+    if (!trained_on_ || accepted_.as_trained) return;
+    Report(0.1, "refitting springs without any new effect");
+    fitting_->RefitSprings(kSpringSteps, &accepted_);
   }
 
   // Looks for one more effect; false if none is accepted.
@@ -248,14 +256,15 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads);
   Loop loop(&fitting, result.noise_floor, result.trained_on, options);
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
-  if (!loop.Begin(known)) {
+  if (!loop.FitCommon(known)) {
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",
                             recordings[0].name, twin.name));
   }
-  // its training took more care than a refit does
+  // its training took more care than a refit of springs does
   if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
     if (const auto trained = AsTrained(twin, splits, loop.accepted())) loop.Offer(*trained);
   }
+  loop.FitSprings();
   result.before = loop.accepted().track;
   result.before_track = loop.accepted().held;
   for (int round = 0; round < options.most_effects && loop.Round(round); ++round) {

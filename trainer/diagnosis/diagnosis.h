@@ -6,7 +6,7 @@
 //   3  trace    of every effect: how much a linearised fit with its parameters added would lower
 //               the misfit, from each of its starts (effect_trace.h)
 //   4  search   of the best effects, each on each body that comes into question
-//               (diagnosis_body.h), by refits over longer and longer horizons (effect_search.h)
+//               (diagnosis_body.h), by refits under an observer that lets go (effect_search.h)
 //   5  choose   the one that is best on frames not fitted, or a simpler one that is as good; with
 //               its single springs fitted, too, it is accepted if it beats the refit without it
 //               by more than chance (paired block bootstrap) and by more than a small part

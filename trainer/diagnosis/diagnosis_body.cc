@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <iterator>
 
@@ -15,6 +16,10 @@ namespace {
 // Of an inner particle, about: on a sheet the first two, three, four shells of a regular grid, in
 // a solid the first two, the first three and part of the fourth.
 constexpr int kNeighbours[] = {12, 18, 28};
+
+// Of the squared lengths of the springs at a node of a solid, the part across a plane, at least. A
+// third where they spread evenly.
+constexpr double kSolid = 0.03;
 
 constexpr double kStart = 8;  // sub-steps a frame; the fit looks for a better start itself
 
@@ -61,6 +66,22 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
     bodies.push_back({system, candidate.controller_velocity, false, candidate.Label()});
   }
   return bodies;
+}
+
+bool IsSolid(const SpringMassSystem& system) {
+  if (system.order.size() > 0) return false;
+  std::vector<Eigen::Matrix3d> spread(system.position.cols(), Eigen::Matrix3d::Zero());
+  for (const auto& [a, b] : system.springs) {
+    const Eigen::Vector3d d = system.position.col(b) - system.position.col(a);
+    spread[a] += d * d.transpose();
+    spread[b] += d * d.transpose();
+  }
+  int solid = 0;
+  for (int i = 0; i < system.node_count(); ++i) {
+    const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread[i]).eigenvalues()[0];
+    if (least > kSolid * spread[i].trace()) ++solid;
+  }
+  return 2 * solid > system.node_count();
 }
 
 }  // namespace physpring

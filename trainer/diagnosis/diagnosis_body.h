@@ -27,6 +27,10 @@ struct DiagnosisBody {
 // Never empty; the twin's own model first. `recording` is one of the twin's object.
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on);
 
+// Whether springs spread in all three directions around most nodes, and the body is no rod: the
+// bending of a solid is its springs' own.
+bool IsSolid(const SpringMassSystem& system);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_BODY_H_

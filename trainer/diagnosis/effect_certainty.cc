@@ -26,7 +26,7 @@ Eigen::VectorXd ValuesOf(const SpringMassSystem& system) {
 }  // namespace
 
 std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const EffectFit& fit) {
-  EffectProblem problem = fitting.Problem(fit, EffectFitting::Horizon::kAll);
+  EffectProblem problem = fitting.Problem(fit, 0);
   if (!problem.FixSubsteps(fit.x)) return {};
   const auto r = problem.Residuals(fit.x);
   if (!r || r->size() == 0) return {};

@@ -14,13 +14,13 @@
 namespace physpring {
 namespace {
 
-constexpr double kShort = 0.3;                  // part of the fit frames of the short horizon
 constexpr double kTrustedScale = 0.05;          // of common factors that hardly move
 constexpr double kSoftest = 2, kStiffest = 64;  // start systems tried, in sub-steps a frame
 constexpr int kSpringConjugateGradients = 20;
 // Of an effect's parameters beside the springs' own (fit_model.h), as Levenberg-Marquardt has it.
 constexpr double kEffectPrecision = 0.25, kEffectScale = 30;
 
+constexpr double kSpringGains[] = {0.1, 0};
 constexpr double kSlow = 0.99;  // a step of Gauss-Newton that leaves more gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end it
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
@@ -67,8 +67,11 @@ EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
                              std::vector<SplitRecording> recordings, int threads)
     : bodies_(std::move(bodies)),
       recordings_(std::move(recordings)),
-      short_(Shorten(recordings_, kShort)),
-      threads_(threads) {}
+      followed_(recordings_),
+      threads_(threads) {
+  for (const SplitRecording& split : recordings_) seen_.push_back(OnlyFitFrames(split));
+  for (std::size_t i = 0; i < seen_.size(); ++i) followed_[i].recording = &seen_[i];
+}
 
 double EffectFitting::difference() const { return recordings_[0].recording->ground ? 1e-2 : 1e-3; }
 
@@ -83,7 +86,7 @@ EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>
     SpringMassSystem scaled = base;
     if (!tried.trusted) ScaleToSubsteps(1 / recording.fps, substeps, kStepSafety, &scaled);
     EffectProblem problem = MakeProblem(EffectModel(CommonFactors(scaled, recording), 1, effects),
-                                        tried.controller_velocity, Horizon::kShort);
+                                        tried.controller_velocity, kObserverGains[0]);
     const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());
     if (!problem.FixSubsteps(x)) continue;
     const auto r = problem.Residuals(x);
@@ -102,24 +105,24 @@ EffectModel EffectFitting::Model(const EffectFit& fit) const {
                      body.trusted ? kTrustedScale : 1, fit.start);
 }
 
-EffectProblem EffectFitting::Problem(const EffectFit& fit, Horizon horizon) const {
-  return MakeProblem(Model(fit), bodies_[fit.body].controller_velocity, horizon);
+EffectProblem EffectFitting::Problem(const EffectFit& fit, double gain) const {
+  return MakeProblem(Model(fit), bodies_[fit.body].controller_velocity, gain);
 }
 
 EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velocity,
-                                         Horizon horizon) const {
+                                         double gain) const {
   EffectProblem::Options options;
   options.most_rate = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal
                           ? kMostCommonRate
                           : kMostRate;
   options.controller_velocity = controller_velocity;
   options.difference = recordings_[0].recording->ground ? 1e-3 : 1e-5;
-  return EffectProblem(std::move(model), horizon == Horizon::kShort ? short_ : recordings_,
-                       options);
+  options.observer.gain = gain;
+  return EffectProblem(std::move(model), gain > 0 ? followed_ : recordings_, options);
 }
 
-bool EffectFitting::DescendOne(Horizon horizon, int steps, EffectFit* fit) const {
-  EffectProblem problem = Problem(*fit, horizon);
+bool EffectFitting::DescendOne(double gain, int steps, EffectFit* fit) const {
+  EffectProblem problem = Problem(*fit, gain);
   LevenbergMarquardtOptions options;
   options.difference = difference();
   LevenbergMarquardtState state;
@@ -138,8 +141,8 @@ bool EffectFitting::DescendOne(Horizon horizon, int steps, EffectFit* fit) const
   return true;
 }
 
-void EffectFitting::Descend(Horizon horizon, int steps, std::vector<EffectFit>* fits) const {
-  ForEach(threads_, fits, [&](EffectFit* fit) { return DescendOne(horizon, steps, fit); });
+void EffectFitting::Descend(double gain, int steps, std::vector<EffectFit>* fits) const {
+  ForEach(threads_, fits, [&](EffectFit* fit) { return DescendOne(gain, steps, fit); });
 }
 
 bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
@@ -154,7 +157,7 @@ bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
 }
 
 bool EffectFitting::Judge(EffectFit* fit) const {
-  EffectProblem problem = Problem(*fit, Horizon::kAll);
+  EffectProblem problem = Problem(*fit, 0);
   return Predict(&problem, fit->x, fit);
 }
 
@@ -165,19 +168,22 @@ void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
 void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
   SpringMassSystem base = fit->system;
   base.effects.clear();
-  EffectProblem problem = MakeProblem(
-      EffectModel(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects),
-      bodies_[fit->body].controller_velocity, Horizon::kAll);
-  const GaussNewtonOptions prior = Prior(problem.model());
+  const EffectModel model(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects);
+  const GaussNewtonOptions prior = Prior(model);
   GaussNewtonState state;
-  state.x = Eigen::VectorXd::Zero(problem.model().size());
-  state.damping = 1e-3;
-  int slow = 0;
-  for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
-    const double before = state.mean_square;
-    state = GaussNewtonStep(&problem, state, prior);
-    slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
+  state.x = Eigen::VectorXd::Zero(model.size());
+  for (double gain : kSpringGains) {
+    EffectProblem problem = MakeProblem(model, bodies_[fit->body].controller_velocity, gain);
+    state.damping = 1e-3;
+    state.converged = false;
+    int slow = 0;
+    for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
+      const double before = state.mean_square;
+      state = GaussNewtonStep(&problem, state, prior);
+      slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
+    }
   }
+  EffectProblem problem = MakeProblem(model, bodies_[fit->body].controller_velocity, 0);
   EffectFit refitted = *fit;
   if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
 }

@@ -38,41 +38,45 @@ void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* f
 
 class EffectFitting {
  public:
-  enum class Horizon { kShort, kAll };  // the first part of the fit frames, or all
-
   EffectFitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings,
                 int threads);
+  EffectFitting(const EffectFitting&) = delete;
+  EffectFitting& operator=(const EffectFitting&) = delete;
 
   const std::vector<DiagnosisBody>& bodies() const { return bodies_; }
   const std::vector<SplitRecording>& recordings() const { return recordings_; }
   int threads() const { return threads_; }
   double difference() const;  // step of forward differences; longer where contacts jump
 
-  // A fit of that body that begins as soft or stiff as predicts best. Not fitted yet; its x is
-  // empty if the motion diverges at each stiffness.
+  // A fit of that body that begins as soft or stiff as predicts best under the highest gain. Not
+  // fitted yet; its x is empty if the motion diverges at each stiffness.
   EffectFit Begin(std::size_t body, const std::vector<EffectValues>& effects);
 
   EffectModel Model(const EffectFit& fit) const;
-  EffectProblem Problem(const EffectFit& fit, Horizon horizon) const;
+  // Under an observer of this gain, which sees the fit frames only.
+  EffectProblem Problem(const EffectFit& fit, double gain) const;
 
   // At most `steps` of Levenberg-Marquardt for each of the fits, on several threads. Those that
   // cannot be evaluated are taken out.
-  void Descend(Horizon horizon, int steps, std::vector<EffectFit>* fits) const;
+  void Descend(double gain, int steps, std::vector<EffectFit>* fits) const;
 
   // Predicts everything; false if a motion diverges.
   bool Judge(EffectFit* fit) const;
   void JudgeAll(std::vector<EffectFit>* fits) const;  // those that diverge are taken out
 
-  // Single springs, too, for at most `steps`; the fit stays as it is if that diverges.
+  // Single springs, too, for at most `steps` under an observer and as many without; the fit stays
+  // as it is if that diverges.
   void RefitSprings(int steps, EffectFit* fit) const;
 
  private:
   bool Predict(EffectProblem* problem, const Eigen::VectorXd& x, EffectFit* fit) const;
-  EffectProblem MakeProblem(EffectModel model, bool controller_velocity, Horizon horizon) const;
-  bool DescendOne(Horizon horizon, int steps, EffectFit* fit) const;
+  EffectProblem MakeProblem(EffectModel model, bool controller_velocity, double gain) const;
+  bool DescendOne(double gain, int steps, EffectFit* fit) const;
 
   std::vector<DiagnosisBody> bodies_;
-  std::vector<SplitRecording> recordings_, short_;
+  std::vector<SplitRecording> recordings_;
+  std::vector<Recording> seen_;           // with the fit frames only ...
+  std::vector<SplitRecording> followed_;  // ... and their splits
   int threads_;
 };
 

@@ -6,33 +6,26 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
 
 #include "trainer/diagnosis/block_bootstrap.h"
 
 namespace physpring {
 namespace {
 
-using Horizon = EffectFitting::Horizon;
-
-constexpr std::size_t kTracedBodies = 2;
 constexpr std::size_t kTracedEffects = 6;  // that are refitted
-constexpr int kBodySteps = 10;
-// Physics that is missing is missing from all bodies alike: one whose mean square misfit is so many
-// times that of the best is not tried with effects.
-constexpr double kHopeless = 2;
 constexpr int kDraws = 1000;
 
 // Steps of all fits, and how many of them go on after that: in all, and with one effect.
 struct Cut {
-  Horizon horizon;
+  double gain;
   int steps;
   std::size_t kept, of_an_effect;
 };
-constexpr std::array<Cut, 4> kCuts = {{{Horizon::kShort, 3, 12, 3},
-                                       {Horizon::kShort, 6, 8, 2},
-                                       {Horizon::kAll, 4, 6, 2},
-                                       {Horizon::kAll, 8, 6, 2}}};
-constexpr std::array<Cut, 1> kBodyCuts = {{{Horizon::kAll, 10, 2, 2}}};
+// Bodies without effects, down to the gain of the trace and down to none; with an effect.
+constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 5, 3, 3}, {0.2, 5, 2, 2}, {0.1, 5, 2, 2}}};
+constexpr std::array<Cut, 2> kBestCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
+constexpr std::array<Cut, 3> kCuts = {{{0.1, 3, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
 
 std::string NewEffect(const EffectFit& fit) {
   return fit.start.empty() ? "" : fit.start.back().name;
@@ -54,23 +47,25 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* f
   fits->resize(std::min(fits->size(), count));
 }
 
-template <class Cuts>
-void Halve(const EffectFitting& fitting, const Cuts& cuts, const SearchProgress& progress,
+// Successive halving; the best fit by misfit is the first one after it.
+void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const SearchProgress& progress,
            std::vector<EffectFit>* fits) {
   double share = 0.3;
   for (const Cut& cut : cuts) {
     if (progress) {
-      progress(share, fmt::format("refitting {} models over {} fit frames", fits->size(),
-                                  cut.horizon == Horizon::kShort ? "the first" : "all"));
+      progress(share, fmt::format("refitting {} models, gain {}", fits->size(), cut.gain));
     }
-    share += 0.15;
+    share += 0.2;
     for (EffectFit& fit : *fits) {
       fit.damping = 1e-2;
       fit.converged = false;
     }
-    fitting.Descend(cut.horizon, cut.steps, fits);
+    fitting.Descend(cut.gain, cut.steps, fits);
     Keep(cut.kept, cut.of_an_effect, fits);
   }
+}
+
+void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
   fitting.JudgeAll(fits);
   std::stable_sort(fits->begin(), fits->end(), [](const EffectFit& p, const EffectFit& q) {
     return p.track.held < q.track.held;
@@ -85,13 +80,13 @@ std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<Effec
     EffectFit fit = fitting->Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
-  fitting->Descend(Horizon::kShort, kBodySteps, &fits);
+  Halve(*fitting, kBodyCuts, {}, &fits);
   return fits;
 }
 
 std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies) {
-  Keep(kBodyCuts[0].kept, kBodyCuts[0].kept, &bodies);
-  Halve(fitting, kBodyCuts, {}, &bodies);
+  Halve(fitting, kBestCuts, {}, &bodies);
+  JudgeAndSort(fitting, &bodies);
   if (bodies.empty()) return {};
   return bodies[0];
 }
@@ -100,16 +95,8 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector
                                  const std::vector<const Effect*>& effects,
                                  const SearchProgress& progress) {
   EffectSearchResult result;
-  std::vector<EffectFit> traced = bodies;
-  Keep(kTracedBodies, kTracedBodies, &traced);
-  for (std::size_t i = 0; i < traced.size(); ++i) {
-    if (progress) progress(0.15 * static_cast<double>(i), "tracing the effects");
-    const std::vector<EffectTrace> traces = TraceEffects(fitting, traced[i], effects);
-    if (i == 0) result.traces = traces;
-    for (std::size_t n = 0; n < traces.size(); ++n) {
-      if (traces[n].score > result.traces[n].score) result.traces[n] = traces[n];
-    }
-  }
+  if (progress) progress(0, "tracing the effects");
+  result.traces = TraceEffects(fitting, bodies.front(), effects);
   std::vector<std::size_t> order;
   for (std::size_t n = 0; n < effects.size(); ++n) {
     if (result.traces[n].start.size() > 0) order.push_back(n);
@@ -121,7 +108,6 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector
   for (std::size_t n : order) {
     const EffectTrace& trace = result.traces[n];
     for (const EffectFit& body : bodies) {
-      if (body.misfit > kHopeless * traced[0].misfit) continue;
       EffectFit fit = body;
       fit.start.push_back({trace.effect->name(), trace.start});
       fit.x.conservativeResizeLike(Eigen::VectorXd::Zero(body.x.size() + trace.start.size()));
@@ -129,6 +115,7 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector
     }
   }
   Halve(fitting, kCuts, progress, &result.fits);
+  JudgeAndSort(fitting, &result.fits);
   // of each effect the body that predicts best
   std::map<std::string, int> seen;
   std::erase_if(result.fits, [&](const EffectFit& fit) { return seen[NewEffect(fit)]++ > 0; });

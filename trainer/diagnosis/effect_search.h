@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for the effect that a model lacks, together with the body that it belongs to: with
-// physics missing, the body that fits best is seldom the right one. Each of the effects that the
-// trace ranks first is tried on each body, all are fitted for a few steps, the better part goes on:
-// first over a short horizon, then over all fit frames (successive halving).
+// The search for the effect that a model lacks, together with the body that it belongs to, under an
+// observer whose gain falls (observer.h): with a high gain the misfit is the body's, since what is
+// missing has no time to add up; with a low one it is the effect's. So bodies are chosen first.
+// Then each of the effects that the trace ranks first is tried on each body that is left, all are
+// fitted for a few steps, the better part goes on with a lower gain (successive halving).
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 
@@ -19,18 +20,19 @@ namespace physpring {
 // Called between steps with the share that is done; may throw to stop.
 using SearchProgress = std::function<void(double share, const std::string& status)>;
 
-// Each body as it is, fitted over the short horizon. Those that diverge are left out.
+// The bodies that fit best, as they are, fitted down to the gain of the trace; the best
+// first. Those that diverge are left out.
 std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known);
 
-// The best of them on held-out frames after a fit to all fit frames; nothing if all diverge.
+// The best of them on held-out frames after a fit without an observer; nothing if all diverge.
 std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies);
 
 struct EffectSearchResult {
-  std::vector<EffectTrace> traces;  // of each effect, the better of the bodies that were traced
+  std::vector<EffectTrace> traces;  // of each effect, on the best body
   std::vector<EffectFit> fits;      // of the best effects, judged, least held-out error first
 };
 
-// `bodies`: fits without the effect, over the short horizon.
+// `bodies`: fits without the effect, the best first; at least one.
 EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                  const std::vector<const Effect*>& effects,
                                  const SearchProgress& progress);

@@ -11,6 +11,7 @@
 namespace physpring {
 namespace {
 
+constexpr double kGain = 0.1;        // of the observer
 constexpr std::size_t kStarts = 2;   // of an effect that are looked at closely
 constexpr double kPrecision = 0.25;  // of the prior, as Levenberg-Marquardt has it
 constexpr double kLongestStep = 1.5;
@@ -27,7 +28,7 @@ class Tracer {
 
   // The point to trace from; false if it cannot be evaluated.
   bool Prepare() {
-    EffectProblem own = fitting_.Problem(fit_, EffectFitting::Horizon::kShort);
+    EffectProblem own = fitting_.Problem(fit_, kGain);
     if (!own.FixSubsteps(fit_.x)) return false;
     const auto r = own.Residuals(fit_.x);
     if (!r || r->size() == 0) return false;
@@ -70,7 +71,7 @@ class Tracer {
   EffectProblem Add(const Effect& effect, const Eigen::VectorXd& start) const {
     EffectFit with = fit_;
     with.start.push_back({effect.name(), start});
-    return fitting_.Problem(with, EffectFitting::Horizon::kShort);
+    return fitting_.Problem(with, kGain);
   }
   Eigen::VectorXd Extend(const Eigen::VectorXd& start) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(fit_.x.size() + start.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The trace: how much of the squared misfit on the first frames each effect could take away, beyond
+// The trace: how much of the squared misfit under an observer each effect could take away, beyond
 // what the model's own parameters can, before anything is refitted.
 //   start     of an effect's many starts, the two whose whole response, less what the model's own
 //             parameters could do alike, lies along the residuals most (one rollout each)

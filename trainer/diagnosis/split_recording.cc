@@ -2,6 +2,7 @@
 #include "trainer/diagnosis/split_recording.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace physpring {
 namespace {
@@ -35,15 +36,13 @@ SplitRecording HoldOutFrames(const Recording& recording) {
   return split;
 }
 
-std::vector<SplitRecording> Shorten(std::vector<SplitRecording> recordings, double part) {
-  for (SplitRecording& split : recordings) {
-    const int frames = std::max(2, static_cast<int>(part * split.last(Use::kFit)));
-    for (std::size_t frame = 0; frame < split.use.size(); ++frame) {
-      const bool kept = static_cast<int>(frame) < frames && split.use[frame] == Use::kFit;
-      if (!kept) split.use[frame] = Use::kNone;
-    }
+Recording OnlyFitFrames(const SplitRecording& split) {
+  Recording part = *split.recording;
+  for (std::size_t frame = 1; frame < split.use.size(); ++frame) {
+    if (split.use[frame] == Use::kFit) continue;
+    part.points[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return recordings;
+  return part;
 }
 
 }  // namespace physpring

@@ -25,9 +25,8 @@ SplitRecording UseAll(const Recording& recording, SplitRecording::Use use);
 // it has none; the rest to fit.
 SplitRecording HoldOutFrames(const Recording& recording);
 
-// The first `part` of the fit frames alone: over a shorter time a motion depends on its parameters
-// more evenly.
-std::vector<SplitRecording> Shorten(std::vector<SplitRecording> recordings, double part);
+// A copy of the recording in which, after frame 0, only frames to fit are seen.
+Recording OnlyFitFrames(const SplitRecording& split);
 
 }  // namespace physpring
 

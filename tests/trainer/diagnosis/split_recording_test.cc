@@ -39,12 +39,14 @@ TEST(SplitRecording, HoldsOutEveryFourthBlockWhereThereIsNoFuture) {
   EXPECT_EQ(Count(split, Use::kHeld), 6);
 }
 
-TEST(SplitRecording, KeepsTheFirstPartOfTheFitFramesAlone) {
-  const Recording recording = Frames(20, 14);
-  const auto kept = Shorten({HoldOutFrames(recording), UseAll(recording, Use::kHeld)}, 0.5);
-  EXPECT_EQ(Count(kept[0], Use::kFit), 6);  // 1 to 6, of 14 with the start
-  EXPECT_EQ(Count(kept[0], Use::kHeld), 0);
-  EXPECT_EQ(Count(kept[1], Use::kHeld), 0);
+TEST(SplitRecording, OnlyFitFramesAreSeenInACopy) {
+  const Recording recording = Frames(25, 25);
+  const SplitRecording split = HoldOutFrames(recording);
+  const Recording copy = OnlyFitFrames(split);
+  EXPECT_EQ(copy.points[0], recording.points[0]);
+  for (std::size_t frame = 1; frame < 25; ++frame) {
+    EXPECT_EQ(copy.points[frame].hasNaN(), split.use[frame] != Use::kFit) << frame;
+  }
 }
 
 }  // namespace

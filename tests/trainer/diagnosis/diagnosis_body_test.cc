@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/diagnosis_body.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace physpring {
+namespace {
+
+// Nodes on a regular grid, each joined to all within 1.8 spacings.
+SpringMassSystem Grid(int across, int along, int high) {
+  SpringMassSystem system;
+  system.position.resize(3, across * along * high);
+  int node = 0;
+  for (int i = 0; i < across; ++i) {
+    for (int j = 0; j < along; ++j) {
+      for (int k = 0; k < high; ++k) system.position.col(node++) = Eigen::Vector3d(i, j, k);
+    }
+  }
+  system.mass = Eigen::VectorXd::Ones(node);
+  for (int a = 0; a < node; ++a) {
+    for (int b = a + 1; b < node; ++b) {
+      if ((system.position.col(b) - system.position.col(a)).norm() < 1.8) {
+        system.springs.push_back({a, b});
+      }
+    }
+  }
+  return system;
+}
+
+TEST(IsSolid, ABlockIs) { EXPECT_TRUE(IsSolid(Grid(4, 3, 3))); }
+
+TEST(IsSolid, ALineIsNot) { EXPECT_FALSE(IsSolid(Grid(9, 1, 1))); }
+
+TEST(IsSolid, ASheetIsNotEvenIfItIsCurved) {
+  SpringMassSystem sheet = Grid(8, 6, 1);
+  EXPECT_FALSE(IsSolid(sheet));
+  constexpr double kRadius = 4;  // spacings
+  for (int i = 0; i < sheet.position.cols(); ++i) {
+    const double angle = sheet.position(0, i) / kRadius;
+    sheet.position.col(i)[0] = kRadius * std::sin(angle);
+    sheet.position.col(i)[2] = kRadius * std::cos(angle);
+  }
+  EXPECT_FALSE(IsSolid(sheet));
+}
+
+TEST(IsSolid, ARodOfKnownOrderIsNot) {
+  SpringMassSystem bundle = Grid(3, 12, 3);
+  bundle.order = bundle.position.row(1);
+  EXPECT_FALSE(IsSolid(bundle));
+}
+
+}  // namespace
+}  // namespace physpring
