@@ -13,7 +13,8 @@
 namespace physpring {
 namespace {
 
-constexpr std::size_t kTracedEffects = 6;  // that are refitted
+constexpr std::size_t kTracedEffects = 6;  // that are refitted at most ...
+constexpr double kLeastScore = 0.05;       // ... if the trace gives them such a part of the best
 constexpr int kDraws = 1000;
 
 // Steps of all fits, and how many of them go on after that: in all, and with one effect.
@@ -105,6 +106,8 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector
     return result.traces[i].score > result.traces[j].score;
   });
   order.resize(std::min(order.size(), kTracedEffects));
+  const double least = order.empty() ? 0 : kLeastScore * result.traces[order.front()].score;
+  std::erase_if(order, [&](std::size_t n) { return result.traces[n].score < least; });
   for (std::size_t n : order) {
     const EffectTrace& trace = result.traces[n];
     for (const EffectFit& body : bodies) {
