@@ -20,7 +20,7 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-constexpr int kSpringSteps = 5;  // of Gauss-Newton with each gain, after an effect is found
+constexpr int kSpringSteps = 10;  // of Gauss-Newton, after an effect is found
 constexpr int kDraws = 2000;
 constexpr double kBlock = 0.2;  // s, of the bootstrap
 // Held-out errors, times the noise floor: below the first, nothing is missing; below the second,

@@ -20,7 +20,6 @@ constexpr int kSpringConjugateGradients = 20;
 // Of an effect's parameters beside the springs' own (fit_model.h), as Levenberg-Marquardt has it.
 constexpr double kEffectPrecision = 0.25, kEffectScale = 30;
 
-constexpr double kSpringGains[] = {0.1, 0};
 constexpr double kSlow = 0.99;  // a step of Gauss-Newton that leaves more gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end it
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
@@ -168,22 +167,19 @@ void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
 void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
   SpringMassSystem base = fit->system;
   base.effects.clear();
-  const EffectModel model(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects);
-  const GaussNewtonOptions prior = Prior(model);
+  EffectProblem problem = MakeProblem(
+      EffectModel(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects),
+      bodies_[fit->body].controller_velocity, 0);
+  const GaussNewtonOptions prior = Prior(problem.model());
   GaussNewtonState state;
-  state.x = Eigen::VectorXd::Zero(model.size());
-  for (double gain : kSpringGains) {
-    EffectProblem problem = MakeProblem(model, bodies_[fit->body].controller_velocity, gain);
-    state.damping = 1e-3;
-    state.converged = false;
-    int slow = 0;
-    for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
-      const double before = state.mean_square;
-      state = GaussNewtonStep(&problem, state, prior);
-      slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
-    }
+  state.x = Eigen::VectorXd::Zero(problem.model().size());
+  state.damping = 1e-3;
+  int slow = 0;
+  for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
+    const double before = state.mean_square;
+    state = GaussNewtonStep(&problem, state, prior);
+    slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
   }
-  EffectProblem problem = MakeProblem(model, bodies_[fit->body].controller_velocity, 0);
   EffectFit refitted = *fit;
   if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
 }

@@ -64,7 +64,7 @@ class EffectFitting {
   bool Judge(EffectFit* fit) const;
   void JudgeAll(std::vector<EffectFit>* fits) const;  // those that diverge are taken out
 
-  // Single springs, too, for at most `steps` under an observer and as many without; the fit stays
+  // Single springs, too, for at most `steps`; the fit stays
   // as it is if that diverges.
   void RefitSprings(int steps, EffectFit* fit) const;
 

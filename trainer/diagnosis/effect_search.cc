@@ -24,7 +24,7 @@ struct Cut {
   std::size_t kept, of_an_effect;
 };
 // Bodies without effects, down to the gain of the trace and down to none; with an effect.
-constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 5, 3, 3}, {0.2, 5, 2, 2}, {0.1, 5, 2, 2}}};
+constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 5, 4, 4}, {0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
 constexpr std::array<Cut, 2> kBestCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.1, 3, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
 
