@@ -126,6 +126,12 @@ GaussNewtonOptions SpringPrior(const Parameters& parameters) {
   return options;
 }
 
+double FactorDifference(const Recording& recording) { return recording.ground ? 1e-2 : 1e-3; }
+
+double DirectionDifference(const Recording& recording, bool single_precision) {
+  return recording.ground || single_precision ? 1e-3 : 1e-5;
+}
+
 TrackProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
                                     const TrainOptions& options) {
   TrackProblem::Options problem;
@@ -133,9 +139,7 @@ TrackProblem::Options FollowOptions(const Recording& recording, const Candidate&
   problem.rollout.controller_velocity = candidate.controller_velocity;
   problem.rollout.substeps = options.substeps;
   problem.most_substeps = static_cast<int>(std::ceil(kMostSubsteps / recording.fps));
-  // contacts make residuals jump, and floats are coarse: differences are then taken over longer
-  // steps
-  problem.difference = recording.ground || options.single_precision ? 1e-3 : 1e-5;
+  problem.difference = DirectionDifference(recording, options.single_precision);
   problem.threads = options.threads;
   return problem;
 }

@@ -41,6 +41,11 @@ Parameters CommonFactors(const SpringMassSystem& base, const Recording& recordin
 Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording);
 GaussNewtonOptions SpringPrior(const Parameters& parameters);
 
+// Steps of differences in the log-factors: of one common factor, and the longest entry of a step
+// along all parameters. Contacts make residuals jump, and floats are coarse: both want longer ones.
+double FactorDifference(const Recording& recording);
+double DirectionDifference(const Recording& recording, bool single_precision);
+
 // No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);
 // for common factors half of that, so that single springs find room.
 TrackProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "trainer/adam.h"
+#include "trainer/observer.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -104,7 +105,7 @@ void FullFit::StepGaussNewton() {
   const Parameters parameters = SpringParameters();
   TrackProblem::Options follow = FollowOptions(first(), model_.candidate, options_);
   follow.rollout.growth_limit = std::numeric_limits<double>::infinity();
-  follow.rollout.observer.gain = kObserverGains[state_.gain];
+  follow.rollout.observer_gain = kObserverGains[state_.gain];
   TrackProblem problem(parameters, all_, follow);
   const GaussNewtonState before{state_.x, state_.damping, state_.mean_square, false};
   const GaussNewtonState after = GaussNewtonStep(&problem, before, SpringPrior(parameters));

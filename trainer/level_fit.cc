@@ -13,6 +13,7 @@
 #include "trainer/lifted_loss.h"
 #include "trainer/lifted_problem.h"
 #include "trainer/network/level_network.h"
+#include "trainer/observer.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -57,7 +58,7 @@ LiftedMotion::Options LevelFit::MotionOptions(int threads, double gain) const {
   motion.rollout.single_precision = options_.single_precision;
   motion.rollout.controller_velocity = twin_.controller_velocity;
   motion.rollout.substeps = options_.substeps;
-  motion.rollout.observer.gain = gain;
+  motion.rollout.observer_gain = gain;
   motion.most_substeps = most_substeps_;
   motion.threads = threads;
   return motion;
@@ -85,7 +86,7 @@ void LevelFit::StepCommon() {
                             MotionOptions(1, kObserverGains[gain_]));
   LevenbergMarquardtOptions options;
   options.threads = options_.threads;
-  options.difference = HasGround() ? 1e-2 : 1e-3;
+  options.difference = FactorDifference(data_.recordings[0]);
   LevenbergMarquardtState state{common_, damping_, mean_square_, false};
   state = LevenbergMarquardtStep(
       [&](const Eigen::VectorXd& x) { return LiftedProblem(parameters, motion, 0).Residuals(x); },
@@ -182,7 +183,8 @@ void LevelFit::StepSprings() {
   motion_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
   const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostSpringRecordings),
                             motion_options);
-  LiftedProblem problem(parameters, motion, HasGround() || options_.single_precision ? 1e-3 : 1e-5);
+  LiftedProblem problem(parameters, motion,
+                        DirectionDifference(data_.recordings[0], options_.single_precision));
   const GaussNewtonState before{springs_, damping_, mean_square_, false};
   GaussNewtonOptions options = SpringPrior(parameters);
   options.conjugate_gradient_steps = kConjugateGradientSteps;

@@ -46,7 +46,6 @@ class LevelFit {
  private:
   enum class Stage { kCommon, kNetwork, kSprings, kDone };
 
-  bool HasGround() const { return data_.recordings[0].ground.has_value(); }
   LiftedMotion::Options MotionOptions(int threads, double gain = 0) const;
   Parameters CommonParameters() const;
   Parameters SpringParameters() const;

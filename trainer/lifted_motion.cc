@@ -11,8 +11,9 @@
 namespace physpring {
 namespace {
 
-// What a rollout of the level's nodes, and an observer of it, needs of the recording.
-Recording ForNodes(const Twin& twin, int level, const Recording& recording) {
+// What a rollout of the level's nodes, and, where there is one, an observer of it need of the
+// recording.
+Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool observed) {
   Recording carried;
   carried.name = recording.name;
   carried.controllers = recording.controllers;
@@ -24,6 +25,7 @@ Recording ForNodes(const Twin& twin, int level, const Recording& recording) {
   carried.start.resize(3, nodes.cols() + controllers);
   carried.start << nodes, recording.start.rightCols(controllers);
   carried.velocity = AverageOverMembers(twin, level, recording.velocity);
+  if (!observed) return carried;
   // measured where all of a node's members are
   for (const Points& measured : recording.points) {
     Points all = Points::Constant(3, particles, std::numeric_limits<double>::quiet_NaN());
@@ -40,7 +42,7 @@ LiftedMotion::LiftedMotion(const Twin& twin, int level, const std::vector<Episod
     : episodes_(episodes), options_(options) {
   for (const Episode& episode : episodes) {
     const Recording& recording = *episode.recording;
-    carried_.push_back(ForNodes(twin, level, recording));
+    carried_.push_back(ForNodes(twin, level, recording, options.rollout.observer_gain > 0));
     lifts_.emplace_back(twin, level, recording.start.leftCols(recording.particle_count()));
   }
 }

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "trainer/lifted_motion.h"
+#include "trainer/observer.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -40,13 +41,13 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
   follow.threads = 1;  // the differences run in parallel
   follow.most_substeps /= 2;
-  follow.rollout.observer.gain = gain;
+  follow.rollout.observer_gain = gain;
   const Parameters factors =
       CommonFactors(StartSystem(recording, model.candidate, model.start_substeps), recording);
   TrackProblem problem(factors, episodes, follow);
   LevenbergMarquardtOptions levenberg;
   levenberg.threads = options.threads;
-  levenberg.difference = recording.ground ? 1e-2 : 1e-3;
+  levenberg.difference = FactorDifference(recording);
   LevenbergMarquardtState state;
   state.x = model.factors;
   state.damping = damping;
@@ -64,7 +65,8 @@ ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
   for (const Candidate& candidate : Candidates(first(), options)) {
     contenders_.push_back({{candidate, 0, {}, {}}, kInfinity});
   }
-  BeginRound();
+  round_order_.resize(contenders_.size());
+  std::iota(round_order_.begin(), round_order_.end(), 0);
   StartSystem(first(), contenders_[0].model.candidate, kSoftest);  // throws where there is no body
 }
 
@@ -75,7 +77,7 @@ void ModelChoice::SearchStart(ChosenModel* model) const {
     const Parameters factors =
         CommonFactors(StartSystem(first(), model->candidate, substeps), first());
     TrackProblem::Options follow = FollowOptions(first(), model->candidate, options_);
-    follow.rollout.observer.gain = kObserverGains[0];
+    follow.rollout.observer_gain = kObserverGains[0];
     TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
     for (double friction : kFrictions) {
       Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
@@ -99,7 +101,7 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
       options.substeps =
           StableSubsteps(ComputeStabilityBound(system), 1 / judged.whole->fps, kStepSafety);
     }
-    options.observer.gain = kObserverGains[kRounds[round_].last_gain];
+    options.observer_gain = kObserverGains[kRounds[round_].last_gain];
     const int frames = judged.whole->train_frames;
     const auto rollout = RollOut(system, {judged.whole, frames}, options);
     if (rollout->diverged()) return kInfinity;
@@ -143,7 +145,7 @@ void ModelChoice::StepSprings() {
   }
   TrackProblem::Options follow = FollowOptions(first(), model.candidate, options_);
   follow.rollout.growth_limit = kInfinity;
-  follow.rollout.observer.gain = kObserverGains[gain_];
+  follow.rollout.observer_gain = kObserverGains[gain_];
   TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
   prior.conjugate_gradient_steps = kConjugateGradientSteps;
@@ -166,18 +168,13 @@ void ModelChoice::FinishContender(const SpringMassSystem& system) {
   iteration_ = 0;
   gain_ = kRounds[round_].first_gain;
   if (++turn_ < static_cast<int>(round_order_.size())) return;
-  ++round_;
-  BeginRound();
+  BeginNextRound();
 }
 
-void ModelChoice::BeginRound() {
-  turn_ = iteration_ = 0;
-  if (round_ == 0) {
-    round_order_.resize(contenders_.size());
-    std::iota(round_order_.begin(), round_order_.end(), 0);
-    gain_ = kRounds[0].first_gain;
-    return;
-  }
+void ModelChoice::BeginNextRound() {
+  const int left_of_each = kRounds[round_].left_of_each;
+  ++round_;
+  turn_ = 0;
   const auto better = [&](int i, int j) { return contenders_[i].score < contenders_[j].score; };
   std::vector<int> next = round_order_;
   std::stable_sort(next.begin(), next.end(), better);
@@ -187,7 +184,7 @@ void ModelChoice::BeginRound() {
     std::array<int, 2> left = {};  // with and without velocity
     std::erase_if(next, [&](int i) {
       const bool velocity = contenders_[i].model.candidate.controller_velocity;
-      return ++left[velocity ? 0 : 1] > kRounds[round_ - 1].left_of_each;
+      return ++left[velocity ? 0 : 1] > left_of_each;
     });
   }
   std::erase_if(next, [&](int i) { return !std::isfinite(contenders_[i].score); });

@@ -61,7 +61,7 @@ class ModelChoice {
   void StepCommonFactors();
   void StepSprings();
   void FinishContender(const SpringMassSystem& system);
-  void BeginRound();
+  void BeginNextRound();
   void SearchStart(ChosenModel* model) const;
   double TrackError(const SpringMassSystem& system, const Candidate& candidate) const;
 

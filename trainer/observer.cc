@@ -8,11 +8,9 @@ namespace {
 
 // Calls correct(i, a, b / T) for every point seen in a frame that is corrected.
 template <class Correct>
-void ForEachCorrected(const Observer& observer, const Recording& recording, int frame,
-                      Correct correct) {
-  const double a = observer.gain;
-  if (a <= 0 || frame >= observer.frames) return;
-  const double b = a * a / (2 - a) * recording.fps;
+void ForEachCorrected(double gain, const Recording& recording, int frame, Correct correct) {
+  if (gain <= 0) return;
+  const double a = gain, b = a * a / (2 - a) * recording.fps;
   const Points& measured = recording.points[frame];
   for (int i = 0; i < measured.cols(); ++i) {
     if (!std::isnan(measured(0, i))) correct(i, a, b);
@@ -22,9 +20,9 @@ void ForEachCorrected(const Observer& observer, const Recording& recording, int 
 }  // namespace
 
 template <class Real>
-void Observe(const Observer& observer, const Recording& recording, int frame,
-             const Points& position, NodeStates<Real>* state) {
-  ForEachCorrected(observer, recording, frame, [&](int i, double a, double b) {
+void Observe(double gain, const Recording& recording, int frame, const Points& position,
+             NodeStates<Real>* state) {
+  ForEachCorrected(gain, recording, frame, [&](int i, double a, double b) {
     for (int j = 0; j < 3; ++j) {
       const double r = recording.points[frame](j, i) - position(j, i);
       (*state)[i].x[j] += static_cast<Real>(a * r);
@@ -34,9 +32,9 @@ void Observe(const Observer& observer, const Recording& recording, int frame,
 }
 
 template <class Real>
-void ObserveAdjoint(const Observer& observer, const Recording& recording, int frame,
+void ObserveAdjoint(double gain, const Recording& recording, int frame,
                     NodeStates<Real>* state_bar) {
-  ForEachCorrected(observer, recording, frame, [&](int i, double a, double b) {
+  ForEachCorrected(gain, recording, frame, [&](int i, double a, double b) {
     // forward: x += a (m - x), v += b (m - x)
     NodeState<Real>& bar = (*state_bar)[i];
     for (int j = 0; j < 3; ++j) {
@@ -45,11 +43,9 @@ void ObserveAdjoint(const Observer& observer, const Recording& recording, int fr
   });
 }
 
-template void Observe<float>(const Observer&, const Recording&, int, const Points&,
-                             NodeStates<float>*);
-template void Observe<double>(const Observer&, const Recording&, int, const Points&,
-                              NodeStates<double>*);
-template void ObserveAdjoint<float>(const Observer&, const Recording&, int, NodeStates<float>*);
-template void ObserveAdjoint<double>(const Observer&, const Recording&, int, NodeStates<double>*);
+template void Observe<float>(double, const Recording&, int, const Points&, NodeStates<float>*);
+template void Observe<double>(double, const Recording&, int, const Points&, NodeStates<double>*);
+template void ObserveAdjoint<float>(double, const Recording&, int, NodeStates<float>*);
+template void ObserveAdjoint<double>(double, const Recording&, int, NodeStates<double>*);
 
 }  // namespace physpring

@@ -13,29 +13,24 @@
 #define PHYSPRING_TRAINER_OBSERVER_H_
 
 #include <array>
-#include <limits>
 
 #include "twin/node_state.h"
 #include "twin/recording.h"
 
 namespace physpring {
 
-struct Observer {
-  double gain = 0;                               // a: 0 (none) ... 1
-  int frames = std::numeric_limits<int>::max();  // it corrects frames 1 ... frames - 1
-};
-
 // The gains of a fit, one after the other.
 inline constexpr std::array<double, 5> kObserverGains = {0.5, 0.2, 0.1, 0.05, 0};
 
-// Corrects the state after a frame, predicted at `position` (3 x nodes).
+// Corrects the state after a frame, predicted at `position` (3 x nodes), with this gain: 0 (nothing
+// is corrected) ... 1.
 template <class Real>
-void Observe(const Observer& observer, const Recording& recording, int frame,
-             const Points& position, NodeStates<Real>* state);
+void Observe(double gain, const Recording& recording, int frame, const Points& position,
+             NodeStates<Real>* state);
 
 // Adjoint of Observe: the state's derivatives from those after the correction to those before.
 template <class Real>
-void ObserveAdjoint(const Observer& observer, const Recording& recording, int frame,
+void ObserveAdjoint(double gain, const Recording& recording, int frame,
                     NodeStates<Real>* state_bar);
 
 }  // namespace physpring

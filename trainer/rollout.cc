@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trainer/observer.h"
 #include "twin/environment.h"
 #include "twin/recorded_input.h"
 
@@ -18,7 +19,7 @@ class RolloutIn : public Rollout {
  public:
   RolloutIn(const SpringMassSystem& system, const Episode& episode, const RolloutOptions& options)
       : recording_(*episode.recording),
-        observer_(options.observer),
+        observer_gain_(options.observer_gain),
         growth_limit_(options.growth_limit),
         delay_(ControllerDelay(system)),
         gradient_(system),
@@ -36,7 +37,7 @@ class RolloutIn : public Rollout {
         diverged_ = true;
         break;
       }
-      Observe(observer_, recording_, frame, position, &state);
+      Observe(observer_gain_, recording_, frame, position, &state);
       positions_.push_back(std::move(position));
       states_.push_back(std::move(state));
     }
@@ -47,7 +48,7 @@ class RolloutIn : public Rollout {
     NodeStates<Real> state_bar(states_[0].size());
     double injected_squared = 0;
     for (std::size_t frame = states_.size() - 1; frame >= 1; --frame) {
-      ObserveAdjoint(observer_, recording_, static_cast<int>(frame), &state_bar);
+      ObserveAdjoint(observer_gain_, recording_, static_cast<int>(frame), &state_bar);
       injected_squared += position_bar[frame].squaredNorm();
       const double norm = Add(position_bar[frame], &state_bar);
       if (norm > growth_limit_ * std::sqrt(injected_squared)) {
@@ -79,7 +80,7 @@ class RolloutIn : public Rollout {
   }
 
   const Recording& recording_;
-  Observer observer_;
+  double observer_gain_;
   double growth_limit_;
   double delay_;             // of the controllers, s
   SystemGradient gradient_;  // zero, of the right shapes

@@ -12,7 +12,6 @@
 #include <memory>
 #include <vector>
 
-#include "trainer/observer.h"
 #include "twin/recording.h"
 #include "twin/simulator.h"
 
@@ -29,7 +28,7 @@ struct RolloutOptions {
   bool controller_velocity = true;
   int substeps = 0;  // a frame, >= 1
   double growth_limit = 1e3;
-  Observer observer = {};
+  double observer_gain = 0;  // observer.h; 0: none
 };
 
 struct RolloutAdjoint {
@@ -42,7 +41,7 @@ class Rollout {
  public:
   virtual ~Rollout() = default;
 
-  // Positions of frames 0, 1, ... (3 x nodes, m), before the observer's correction; the frames
+  // Positions of frames 0, 1, ... (3 x nodes, m), before an observer's correction; the frames
   // after a divergence are missing.
   const std::vector<Points>& positions() const { return positions_; }
   bool diverged() const { return diverged_; }

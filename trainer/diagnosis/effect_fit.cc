@@ -7,6 +7,7 @@
 #include "trainer/fit_model.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/levenberg_marquardt.h"
+#include "trainer/observer.h"
 #include "trainer/parallel.h"
 #include "trainer/start_system.h"
 #include "twin/stability.h"
@@ -72,7 +73,7 @@ EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
   for (std::size_t i = 0; i < seen_.size(); ++i) followed_[i].recording = &seen_[i];
 }
 
-double EffectFitting::difference() const { return recordings_[0].recording->ground ? 1e-2 : 1e-3; }
+double EffectFitting::difference() const { return FactorDifference(*recordings_[0].recording); }
 
 EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) {
   const Recording& recording = *recordings_[0].recording;
@@ -115,8 +116,8 @@ EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velo
                           ? kMostCommonRate
                           : kMostRate;
   options.controller_velocity = controller_velocity;
-  options.difference = recordings_[0].recording->ground ? 1e-3 : 1e-5;
-  options.observer.gain = gain;
+  options.difference = DirectionDifference(*recordings_[0].recording, false);
+  options.observer_gain = gain;
   return EffectProblem(std::move(model), gain > 0 ? followed_ : recordings_, options);
 }
 

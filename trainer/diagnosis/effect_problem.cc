@@ -69,7 +69,7 @@ std::optional<Eigen::VectorXd> EffectProblem::RollOutAll(
     rollout_options.controller_velocity = options_.controller_velocity;
     rollout_options.substeps = substeps_[i];
     rollout_options.growth_limit = std::numeric_limits<double>::infinity();
-    rollout_options.observer = options_.observer;
+    rollout_options.observer_gain = options_.observer_gain;
     auto rollout = RollOut(system, {split.recording, frames}, rollout_options);
     diverged[i] = rollout->diverged();
     if (diverged[i]) return;
