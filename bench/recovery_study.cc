@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bench/undeclared_effects.h"
+#include "bench/study_recordings.h"
 #include "trainer/diagnosis/diagnosis.h"
 #include "trainer/fit_model.h"
 #include "twin/error.h"
@@ -42,7 +42,7 @@ std::vector<Case> Cases(int seeds, int clean) {
   for (int seed = 0; seed < seeds; ++seed) {
     for (double noise : {3e-4, 1e-3}) {
       for (Body body : bodies) {
-        for (const std::string& effect : UndeclaredEffects()) {
+        for (const std::string& effect : StudyEffects()) {
           cases.push_back({body, effect, noise, seed});
         }
       }

@@ -6,13 +6,49 @@
 
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "twin/error.h"
 
 namespace physpring {
 namespace {
+
+CLI::Validator IsEffect() {
+  CLI::Validator check(
+      [](std::string& text) {
+        try {
+          ParseEffect(text);
+        } catch (const Error& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      },
+      "");
+  return check;
+}
+
+SceneEffects EffectsOf(const std::vector<std::string>& words) {
+  SceneEffects effects;
+  for (const std::string& word : words) {
+    const auto [name, value] = ParseEffect(word);
+    if (!effects.emplace(name, value).second) {
+      throw CLI::ValidationError("--effect", name + " is given twice");
+    }
+  }
+  return effects;
+}
+
+std::string ListEffects() {
+  std::string list = "Effects, by name, with what MuJoCo does:\n";
+  for (const EffectKey& key : EffectKeys()) {
+    list += fmt::format("  {:<38} {}\n", key.name, key.what);
+  }
+  return list;
+}
 
 void Run(const std::string& scene, const std::string& output, bool force,
          const RecordOptions& options) {
@@ -33,10 +69,12 @@ void Run(const std::string& scene, const std::string& output, bool force,
 void AddRecordCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "record",
-      "Simulates a MuJoCo scene with one flex, held by mocap bodies that move along the scene's "
-      "keyframes, and writes what a camera would have measured.");
+      "Simulates a MuJoCo scene with one soft body (a flex, or bodies joined by spatial tendons), "
+      "held by mocap bodies that move along the scene's keyframes, and writes what a camera would "
+      "have measured.");
   struct Arguments {
     std::string scene, output;
+    std::vector<std::string> effects;
     bool force = false;
     RecordOptions options;
   };
@@ -69,8 +107,16 @@ void AddRecordCommand(CLI::App& app) {
       ->check(NumberBetween(0.1, 10000))
       ->type_name("NUMBER")
       ->capture_default_str();
+  command
+      ->add_option("--effect", arguments->effects,
+                   "give the scene this, too, without a word in the recording; may be repeated")
+      ->allow_extra_args(false)
+      ->check(IsEffect())
+      ->type_name("NAME=VALUE");
+  command->footer(ListEffects());
   command->add_flag("--force", arguments->force, "overwrite a file");
   command->callback([arguments] {
+    arguments->options.effects = EffectsOf(arguments->effects);
     Run(arguments->scene, arguments->output, arguments->force, arguments->options);
   });
 }

@@ -8,10 +8,11 @@
 #include <filesystem>
 #include <random>
 
-#include "rollout/flex_points.h"
 #include "rollout/mocap_path.h"
 #include "rollout/observation.h"
 #include "rollout/scene.h"
+#include "rollout/soft_points.h"
+#include "rollout/undeclared_effects.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -55,21 +56,12 @@ int FrameCount(const RecordOptions& options, const MocapPath& path, const std::s
   return static_cast<int>(frames);
 }
 
-bool CanCollide(const mjModel& model, int geom) {
-  return (model.geom_contype[geom] & model.flex_conaffinity[0]) != 0 ||
-         (model.geom_conaffinity[geom] & model.flex_contype[0]) != 0;
-}
-
 // The plane under the object, and warnings of what else is in the way.
-void FindGround(const mjModel& model, const mjData& data, const std::string& where,
-                Recording* recording) {
-  if (model.opt.disableflags & mjDSBL_CONTACT) return;
+void FindGround(const mjModel& model, const mjData& data, const SoftPoints& soft,
+                const std::string& where, Recording* recording) {
   int others = 0;
-  for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (!CanCollide(model, geom)) continue;
-    const bool ground =
-        model.geom_type[geom] == mjGEOM_PLANE && model.body_weldid[model.geom_bodyid[geom]] == 0;
-    if (!ground) {
+  for (const int geom : GeomsInTheWay(model, soft)) {
+    if (!IsGround(model, geom)) {
       ++others;
       continue;
     }
@@ -82,59 +74,54 @@ void FindGround(const mjModel& model, const mjData& data, const std::string& whe
   }
   if (others > 0) {
     recording->warnings.push_back(
-        fmt::format("{}: the flex can collide with {} geom(s) that a recording does not hold (only "
+        fmt::format("{}: the {} can collide with {} geom(s) that a recording does not hold (only "
                     "one ground plane)",
-                    where, others));
+                    where, soft.of_flex ? "flex" : "soft body", others));
   }
 }
 
 // One scene in motion.
 struct Run {
-  const mjModel& model;
+  mjModel* model;
   const MocapPath& path;
-  const FlexPoints& flex;
+  const SoftPoints& soft;
+  const UndeclaredEffects& effects;
   mjData* data;
+  long lag = 0;  // steps by which the mocap bodies move later than is recorded
 
-  // Positions and velocities of the present state, with the mocap bodies where they are at `time`.
-  void PlaceAt(double time) {
-    path.Place(time, data);
+  double TimeOf(long step) const { return static_cast<double>(step) * model->opt.timestep; }
+
+  // Positions and velocities of the present state, with the mocap bodies where they are before
+  // that step.
+  void PlaceAt(long step) {
+    path.Place(TimeOf(step - lag), data);
     ComputeKinematics();
   }
 
   void ComputeKinematics() {
-    mj_kinematics(&model, data);
-    mj_comPos(&model, data);
-    mj_flex(&model, data);
-    mj_comVel(&model, data);
+    mj_kinematics(model, data);
+    mj_comPos(model, data);
+    mj_flex(model, data);
+    mj_comVel(model, data);
   }
 
-  // From `time` by one step, the mocap bodies being where they are at its end.
-  void StepFrom(double time, const std::string& where) {
-    path.Place(time + model.opt.timestep, data);
+  // By one step, the mocap bodies being where they are at its end.
+  void Advance(long step, const std::string& where) {
+    path.Place(TimeOf(step - lag) + model->opt.timestep, data);
+    effects.Drive(TimeOf(step), model, data);
     try {
-      Step(model, data);
+      Step(*model, data);
     } catch (const Error& error) {
-      throw Error(fmt::format("{}: at {:.3f} s {}", where, time, error.what()));
+      throw Error(fmt::format("{}: at {:.3f} s {}", where, TimeOf(step), error.what()));
     }
   }
 
   // Positions of points, interior and controllers, 3 x (N+M+C).
   Points AllPositions() const {
-    Points all(3, particles() + static_cast<Eigen::Index>(flex.controllers.size()));
-    all << VertexPositions(*data, flex.points), VertexPositions(*data, flex.interior),
-        VertexPositions(*data, flex.controllers);
+    const std::vector<int> particles = soft.Particles();
+    Points all(3, static_cast<Eigen::Index>(particles.size() + soft.controllers.size()));
+    all << PositionsOf(*data, soft, particles), PositionsOf(*data, soft, soft.controllers);
     return all;
-  }
-
-  Points ParticleVelocities() const {
-    Points all(3, particles());
-    all << VertexVelocities(model, *data, flex.points),
-        VertexVelocities(model, *data, flex.interior);
-    return all;
-  }
-
-  Eigen::Index particles() const {
-    return static_cast<Eigen::Index>(flex.points.size() + flex.interior.size());
   }
 };
 
@@ -144,32 +131,38 @@ void RecordStart(const Points& rest, const std::string& where, Run* run, Recordi
   recording->start = run->AllPositions();
   recording->rest = rest;
   recording->rest_given = rest != recording->start;
-  recording->velocity = run->ParticleVelocities();
-  recording->interior = VertexPositions(*run->data, run->flex.interior);
-  FindGround(run->model, *run->data, where, recording);
+  recording->velocity = VelocitiesOf(*run->model, *run->data, run->soft, run->soft.Particles());
+  recording->interior = PositionsOf(*run->data, run->soft, run->soft.interior);
+  FindGround(*run->model, *run->data, run->soft, where, recording);
 }
 
-// Steps through the scene and records exact points and controllers.
-void RecordMotion(int frames, const std::string& where, Run* run, Recording* recording) {
+// Steps through the scene and records exact points and controllers. With a lag, a frame's
+// controllers are those of so many steps later.
+void RecordMotion(long frames, const std::string& where, Run* run, Recording* recording) {
   // the reference configuration, then the first keyframe's
   run->ComputeKinematics();
   const Points rest = run->AllPositions();
-  mj_resetDataKeyframe(&run->model, run->data, 0);
+  mj_resetDataKeyframe(run->model, run->data, 0);
 
-  const double h = run->model.opt.timestep;
-  const auto steps = std::lround(1 / (recording->fps * h));  // a frame
-  const auto settling = std::lround(std::ceil(std::max(0.0, -run->path.start_time()) / h - 1e-6));
-  for (long step = -settling; step < 0; ++step) run->StepFrom(static_cast<double>(step) * h, where);
+  const double h = run->model->opt.timestep;
+  const long steps = std::lround(1 / (recording->fps * h));  // a frame
+  const long settling = std::lround(std::ceil(std::max(0.0, -run->path.start_time()) / h - 1e-6));
+  for (long step = -settling; step < 0; ++step) run->Advance(step, where);
   RecordStart(rest, where, run, recording);
-  for (long frame = 0; frame < frames; ++frame) {
-    run->PlaceAt(static_cast<double>(frame * steps) * h);
-    recording->points.push_back(VertexPositions(*run->data, run->flex.points));
-    recording->controllers.push_back(VertexPositions(*run->data, run->flex.controllers));
-    if (frame + 1 == frames) break;
-    for (long step = frame * steps; step < (frame + 1) * steps; ++step) {
-      run->StepFrom(static_cast<double>(step) * h, where);
+  const long end = (frames - 1) * steps + run->lag;
+  for (long step = 0; step <= end; ++step) {
+    const long later = step - run->lag;
+    const bool points = step % steps == 0 && step / steps < frames;
+    const bool controllers = later >= 0 && later % steps == 0;
+    if (points || controllers) run->PlaceAt(step);
+    if (points) recording->points.push_back(PositionsOf(*run->data, run->soft, run->soft.points));
+    if (controllers) {
+      recording->controllers.push_back(PositionsOf(*run->data, run->soft, run->soft.controllers));
     }
+    if (step < end) run->Advance(step, where);
   }
+  recording->start.rightCols(recording->controller_count()) = recording->controllers[0];
+  if (!recording->rest_given) recording->rest = recording->start;
 }
 
 }  // namespace
@@ -177,24 +170,31 @@ void RecordMotion(int frames, const std::string& where, Run* run, Recording* rec
 Recording RecordScene(const std::string& scene_path, const RecordOptions& options) {
   CheckOptions(options, scene_path);
   Recording recording;
-  const ModelPtr model = LoadScene(scene_path, &recording.warnings);
-  const FlexPoints flex = FindFlexPoints(*model, scene_path);
+  const ModelPtr declared = LoadScene(scene_path, &recording.warnings);
+  const SoftPoints declared_points = FindSoftPoints(*declared, scene_path);
+  const UndeclaredEffects effects(options.effects, *declared, declared_points, scene_path);
+  const ModelPtr model = effects.empty()
+                             ? ModelPtr(mj_copyModel(nullptr, declared.get()))
+                             : EditScene(scene_path, [&](mjSpec* spec) { effects.Edit(spec); });
+  effects.Change(model.get());
+  const SoftPoints soft = FindSoftPoints(*model, scene_path);
   MocapPath path(*model, scene_path);
   path.Vary(options.vary, SeedFor(Use::kVary, options.seed));
   const int frames = FrameCount(options, path, scene_path);
 
   recording.name = std::filesystem::path(scene_path).stem().string();
   recording.fps = options.fps;
-  recording.mass = flex.mass;
-  recording.gravity = Eigen::Map<const Eigen::Vector3d>(model->opt.gravity);
-  if (model->opt.disableflags & mjDSBL_GRAVITY) recording.gravity.setZero();
+  recording.mass = declared_points.mass;
+  recording.gravity = Eigen::Map<const Eigen::Vector3d>(declared->opt.gravity);
+  if (declared->opt.disableflags & mjDSBL_GRAVITY) recording.gravity.setZero();
   recording.train_frames = static_cast<int>(std::lround(0.7 * frames));
 
   // the longest step, not above the scene's, that divides the frame
   model->opt.timestep =
       1 / (options.fps * std::ceil(1 / (options.fps * model->opt.timestep) - 1e-6));
   const DataPtr data = MakeData(*model);
-  Run run{*model, path, flex, data.get()};
+  Run run{model.get(), path, soft, effects, data.get()};
+  run.lag = std::lround(effects.latency() / model->opt.timestep);
   RecordMotion(frames, scene_path, &run, &recording);
 
   AddOcclusion(options.occlusion, options.fps, SeedFor(Use::kOcclusion, options.seed),

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of simulated objects: a MuJoCo scene with one flex, moved by mocap bodies, as a camera
-// would see it. Its mechanics (finite elements, rods, shells, MuJoCo's contacts) have nothing in
-// common with a twin's, so a twin that explains it has learned something.
+// Recordings of simulated objects: a MuJoCo scene with one soft body, moved by mocap bodies, as a
+// camera would see it. A flex's mechanics (finite elements, rods, shells, MuJoCo's contacts) have
+// nothing in common with a twin's, so a twin that explains it has learned something; a body of
+// tendons is what a twin is, too.
 //
-// Motion: mocap_path.h. What is measured and what is held: flex_points.h. Measurement:
-// observation.h.
+// Motion: mocap_path.h. What is measured and what is held: soft_points.h. Measurement:
+// observation.h. What the recording does not tell: undeclared_effects.h.
 #ifndef PHYSPRING_ROLLOUT_RECORD_H_
 #define PHYSPRING_ROLLOUT_RECORD_H_
 
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "rollout/effect_keys.h"
 #include "twin/recording.h"
 
 namespace physpring {
@@ -23,16 +25,19 @@ struct RecordOptions {
   std::uint64_t seed = 0;  // of noise, occlusion and variation, each independent of the others
   std::optional<double> duration = {};  // s; default: until the last keyframe
   double fps = 30;                      // frames per second
+  SceneEffects effects = {};            // that the recording does not declare
 };
 
 // Simulates the scene from its first keyframe and records it from time 0 on (a first keyframe at a
 // negative time lets the object settle before). Sub-steps are the scene's time step, shortened so
 // that a frame is a whole number of them. `rest` is given where frame 0 is not the scene's
-// reference configuration, in which a flex is stress-free. Ground is the one plane that the flex
-// can collide with; other such geoms are warned of, because a recording does not hold them.
+// reference configuration, in which the body is taken to be stress-free. Ground is the one plane
+// that the body can collide with; other such geoms are warned of, because a recording does not hold
+// them. Mass and gravity are the scene's own, without the effects.
 //
 // Throws Error, one line that begins with `scene_path`: unreadable scene, compiler error, options
-// out of range, a scene that is not one flex held by mocap bodies, an unstable simulation.
+// out of range, a scene that is not one soft body held by mocap bodies or cannot have an effect, an
+// unstable simulation.
 Recording RecordScene(const std::string& scene_path, const RecordOptions& options);
 
 }  // namespace physpring

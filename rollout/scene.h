@@ -6,6 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,12 @@ using DataPtr = std::unique_ptr<mjData, DeleteData>;
 // Reads and compiles the MJCF file `path`; adds what the compiler warns of to `warnings`. Throws
 // Error, one line that begins with `path`, when it is not readable or does not compile.
 ModelPtr LoadScene(const std::string& path, std::vector<std::string>* warnings);
+
+// The same after `edit`; of a file, or of MJCF in memory, which `where` stands for in messages.
+// What the compiler warns of is an Error in the second one, and left out in the first.
+using SceneEdit = std::function<void(mjSpec*)>;
+ModelPtr EditScene(const std::string& path, const SceneEdit& edit);
+ModelPtr CompileScene(const std::string& mjcf, const std::string& where, const SceneEdit& edit);
 
 // Throws Error when the model needs more memory than there is.
 DataPtr MakeData(const mjModel& model);

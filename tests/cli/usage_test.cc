@@ -29,6 +29,8 @@ TEST(Usage, HelpNamesWhatAnOptionTakes) {
     EXPECT_NE(train.find(option), std::string::npos) << option << " in " << train;
   }
   EXPECT_NE(RunProgram({"record", "--help"}).output.find("--noise METRES"), std::string::npos);
+  EXPECT_NE(RunProgram({"record", "--help"}).output.find("tether.stiffness_n_per_m  "),
+            std::string::npos);
 }
 
 // Status 2, nothing on standard output, and this line on standard error.
@@ -46,6 +48,22 @@ TEST(Usage, BadUsageIsOneLine) {
   ExpectRefused({"record", "a.xml", "-o", "a.npz", "--duration", "-1"},
                 "physpring record: --duration: takes a number from 1e-06 to 1000000, not '-1' (see "
                 "physpring record --help)");
+  const auto effect = [](const std::string& value, const std::string& message) {
+    ExpectRefused({"record", "a.xml", "-o", "a.npz", "--effect", value},
+                  "physpring record: --effect: " + message + " (see physpring record --help)");
+  };
+  effect("yield.yield_strain=a lot", "yield.yield_strain takes a number from 0 to 10, not 'a lot'");
+  effect("tether.anchor_x_m", "tether.anchor_x_m takes a number from -100 to 100, not ''");
+  ExpectRefused({"record", "a.xml", "-o", "a.npz", "--effect", "yield.yield_strain=1", "--effect",
+                 "yield.yield_strain=2"},
+                "physpring record: --effect: yield.yield_strain is given twice (see physpring "
+                "record --help)");
+  const ProgramResult unknown =
+      RunProgram({"record", "a.xml", "-o", "a.npz", "--effect", "wind=3"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.errors.find("there is no effect 'wind', but air_drag.drag_kg_per_m, "),
+            std::string::npos)
+      << unknown.errors;
   ExpectRefused({"eval", "a.npz", "b.npz", "--substeps", "few"},
                 "physpring eval: --substeps: takes a whole number from 1 to 1000000, or auto, not "
                 "'few' (see physpring eval --help)");

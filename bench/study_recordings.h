@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small bodies of tendons in MuJoCo with an effect that nobody declares: what a diagnosis is tried
-// on. All effects are MuJoCo's own (attributes of tendons, bodies and options, ellipsoid fluid
-// forces), or forces applied from outside; none of the twin's effects is used.
-#ifndef PHYSPRING_BENCH_UNDECLARED_EFFECTS_H_
-#define PHYSPRING_BENCH_UNDECLARED_EFFECTS_H_
+// Small bodies of tendons in MuJoCo with an effect that nobody declares (undeclared_effects.h):
+// what a diagnosis is tried on.
+#ifndef PHYSPRING_BENCH_STUDY_RECORDINGS_H_
+#define PHYSPRING_BENCH_STUDY_RECORDINGS_H_
 
 #include <cstdint>
 #include <string>
@@ -17,7 +16,7 @@ enum class Body { kRope, kSheet, kBlock };
 
 // Names as in twin/effects, "none", and "moving_attraction": to a point that moves, which is not in
 // the list of effects that a diagnosis knows.
-const std::vector<std::string>& UndeclaredEffects();
+const std::vector<std::string>& StudyEffects();
 
 struct MadeRecordings {
   Recording fit, other;     // two motions of one body
@@ -31,4 +30,4 @@ MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_BENCH_UNDECLARED_EFFECTS_H_
+#endif  // PHYSPRING_BENCH_STUDY_RECORDINGS_H_

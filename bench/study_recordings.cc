@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/study_recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "rollout/scene.h"
+#include "rollout/undeclared_effects.h"
+#include "tests/support/random_system.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kFrames = 75, kSteps = 40;  // steps of MuJoCo a frame
+constexpr double kFps = 50, kTimestep = 1 / (kFps * kSteps);
+constexpr double kMass = 0.03;         // kg, of the body
+constexpr double kYoung = 1;           // N: stiffness times length of the shortest springs
+constexpr double kDrag = 1.5;          // 1/s
+constexpr double kNodeRadius = 0.012;  // m, in the air
+// kg/m: density of air, the blunt coefficient of MuJoCo's ellipsoids, cross-section
+constexpr double kNodeDrag = 1.2 * 0.5 * std::numbers::pi * kNodeRadius * kNodeRadius;
+
+// A regular grid of points, some held; springs reach `reach` spacings.
+struct Grid {
+  int across, down, deep;
+  double spacing, reach;
+};
+
+Grid GridOf(Body body) {
+  switch (body) {
+    case Body::kRope:
+      return {8, 2, 2, 0.02, 1.8};
+    case Body::kSheet:
+      return {5, 4, 1, 0.03, 2.1};
+    case Body::kBlock:
+      return {4, 3, 3, 0.025, 1.5};
+  }
+  return {};
+}
+
+struct Lattice {
+  Points nodes, held;                       // 3 x ., m
+  std::vector<std::array<int, 2>> springs;  // held ones are counted after the nodes
+  std::vector<double> length;
+};
+
+Lattice MakeLattice(Body body) {
+  const Grid grid = GridOf(body);
+  std::vector<Eigen::Vector3d> nodes, held;
+  for (int i = 0; i < grid.across; ++i) {
+    for (int j = 0; j < grid.down; ++j) {
+      for (int k = 0; k < grid.deep; ++k) {
+        const Eigen::Vector3d place(i * grid.spacing, j * grid.spacing, 0.6 + k * grid.spacing);
+        const bool corner = j == 0 && (i == 0 || i == grid.across - 1);
+        const bool is_held = body == Body::kSheet ? corner : i == 0;
+        (is_held ? held : nodes).push_back(place);
+      }
+    }
+  }
+  Lattice lattice;
+  lattice.nodes.resize(3, static_cast<Eigen::Index>(nodes.size()));
+  lattice.held.resize(3, static_cast<Eigen::Index>(held.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) lattice.nodes.col(i) = nodes[i];
+  for (std::size_t i = 0; i < held.size(); ++i) lattice.held.col(i) = held[i];
+  nodes.insert(nodes.end(), held.begin(), held.end());
+  for (int i = 0; i < static_cast<int>(lattice.nodes.cols()); ++i) {
+    for (int j = i + 1; j < static_cast<int>(nodes.size()); ++j) {
+      const double length = (nodes[i] - nodes[j]).norm();
+      if (length > grid.reach * grid.spacing) continue;
+      lattice.springs.push_back({i, j});
+      lattice.length.push_back(length);
+    }
+  }
+  return lattice;
+}
+
+// The damping of a slide joint that makes a body of this mass slow down at the rate kDrag.
+double Damping(double mass) { return mass * std::expm1(kTimestep * kDrag) / kTimestep; }
+
+std::string Place(const Eigen::Vector3d& place) {
+  return fmt::format("{} {} {}", place[0], place[1], place[2]);
+}
+
+std::string Mjcf(const Lattice& lattice) {
+  std::string bodies, tendons;
+  const auto nodes = static_cast<int>(lattice.nodes.cols());
+  for (int i = 0; i < nodes; ++i) {
+    std::string joints;
+    for (const char* axis : {"1 0 0", "0 1 0", "0 0 1"}) {
+      joints += fmt::format(R"(<joint type="slide" axis="{}"/>)", axis);
+    }
+    bodies += fmt::format(
+        R"(<body pos="{}">{}<geom type="sphere" size="{}" mass="{}" fluidshape="ellipsoid" )"
+        R"(fluidcoef="0.5 0 0 0 0" contype="0" conaffinity="0"/><site name="{}"/></body>)",
+        Place(lattice.nodes.col(i)), joints, kNodeRadius, kMass / nodes, i);
+  }
+  for (int i = 0; i < lattice.held.cols(); ++i) {
+    bodies += fmt::format(R"(<body mocap="true" pos="{}"><site name="{}"/></body>)",
+                          Place(lattice.held.col(i)), nodes + i);
+  }
+  for (std::size_t e = 0; e < lattice.springs.size(); ++e) {
+    const double length = lattice.length[e], stiffness = 2 * kYoung / length;
+    tendons += fmt::format(
+        R"(<spatial stiffness="{}" damping="{}" springlength="{}"><site site="{}"/>)"
+        R"(<site site="{}"/></spatial>)",
+        stiffness, 5e-4 * stiffness, length, lattice.springs[e][0], lattice.springs[e][1]);
+  }
+  return fmt::format(
+      R"(<mujoco><option integrator="Euler" timestep="{}"><flag contact="disable"/></option>)"
+      R"(<worldbody>{}</worldbody><tendon>{}</tendon></mujoco>)",
+      kTimestep, bodies, tendons);
+}
+
+void SetVector(const std::string& key, const std::string& unit, const Eigen::Vector3d& value,
+               SceneEffects* effects) {
+  for (int i = 0; i < 3; ++i) {
+    (*effects)[fmt::format("{}_{}_{}", key, "xyz"[i], unit)] = value[i];
+  }
+}
+
+// One effect, at a random place and in a random direction; `size` is about 1.
+SceneEffects MakeEffect(const std::string& effect, double size, const Lattice& lattice,
+                        Random* random) {
+  const Eigen::Index nodes = lattice.nodes.cols();
+  const Eigen::Vector3d node = lattice.nodes.col(
+      static_cast<Eigen::Index>((*random)(0.5, 1) * static_cast<double>(nodes - 1)));
+  const double angle = (*random)(0, 2 * std::numbers::pi);
+  const Eigen::Vector3d sideways(std::cos(angle), std::sin(angle), 0);
+  SceneEffects e;
+  if (effect == "air_drag") {
+    e["air_drag.drag_kg_per_m"] = static_cast<double>(nodes) * kNodeDrag;
+    SetVector("air_drag.wind", "m_per_s", 3 * size * sideways, &e);
+  } else if (effect == "gravity_direction") {
+    e["gravity_direction.tilt_x_rad"] = 0.12 * size * sideways[1];
+    e["gravity_direction.tilt_y_rad"] = -0.12 * size * sideways[0];
+  } else if (effect == "stiffening") {
+    e["stiffening.cubic_stiffness_ratio"] = 60 * size;
+  } else if (effect == "tension_only") {
+    e["tension_only.slack_share"] = 1;
+  } else if (effect == "yield") {
+    e["yield.yield_strain"] = 0.03 / size;
+  } else if (effect == "dry_friction") {
+    e["dry_friction.slip_strain"] = 0.01 * size;
+  } else if (effect == "mass_distribution") {
+    e["mass_distribution.mass_kg"] = 0.5 * size * kMass;
+    SetVector("mass_distribution.place", "m", node, &e);
+  } else if (effect == "tether") {
+    e["tether.stiffness_n_per_m"] = 2 * size;
+    SetVector("tether.place", "m", node, &e);
+    SetVector("tether.anchor", "m", node + 0.1 * sideways, &e);
+  } else if (effect == "rest_length") {
+    e["rest_length.strain_low_end"] = -0.024 * size;
+    e["rest_length.strain_high_end"] = 0.056 * size;
+  } else if (effect == "control_latency") {
+    e["control_latency.latency_s"] = 0.06 * size;
+  } else if (effect == "stiffness_drift") {
+    e["stiffness_drift.relative_rate_per_s"] = -0.5 * size;
+  } else if (effect == "uniform_force") {
+    SetVector("uniform_force.force", "n", 0.08 * size * sideways, &e);
+    e["uniform_force.period_s"] = 0.9;
+  } else if (effect == "moving_attraction") {
+    e["moving_attraction.strength_n_m2"] = 4e-5 * size * static_cast<double>(nodes);
+    SetVector("moving_attraction.centre", "m", {0.1, 0.05, 0.5}, &e);
+  }
+  return e;
+}
+
+// Where the hands are: sums of sines from rest.
+class Hands {
+ public:
+  explicit Hands(Random* random) {
+    for (int axis = 0; axis < 3; ++axis) {
+      amplitude_[axis] = (*random)(0.02, 0.04);
+      rate_[axis] = (*random)(4, 8);
+      phase_[axis] = (*random)(0, 6);
+    }
+  }
+  Eigen::Vector3d At(double time) const {
+    Eigen::Vector3d moved;
+    for (int axis = 0; axis < 3; ++axis) {
+      moved[axis] = amplitude_[axis] *
+                    (std::sin(rate_[axis] * time + phase_[axis]) - std::sin(phase_[axis])) *
+                    std::min(1.0, 4 * time);
+    }
+    return time > 0 ? moved : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+
+ private:
+  Eigen::Vector3d amplitude_, rate_, phase_;
+};
+
+Recording Record(const Lattice& lattice, const SceneEffects& given, const Hands& hands) {
+  const std::string mjcf = Mjcf(lattice);
+  const ModelPtr plain = CompileScene(mjcf, "study", [](mjSpec*) {});
+  const SoftPoints soft = FindSoftPoints(*plain, "study");
+  const UndeclaredEffects effects(given, *plain, soft, "study");
+  const ModelPtr model = CompileScene(mjcf, "study", [&](mjSpec* spec) { effects.Edit(spec); });
+  effects.Change(model.get());
+  for (int dof = 0; dof < model->nv; ++dof) {
+    model->dof_damping[dof] = Damping(model->body_mass[model->dof_bodyid[dof]]);
+  }
+  const DataPtr data = MakeData(*model);
+  Recording recording;
+  recording.fps = kFps;
+  recording.mass = kMass;
+  recording.train_frames = kFrames;
+  recording.start.resize(3, lattice.nodes.cols() + lattice.held.cols());
+  recording.start << lattice.nodes, lattice.held;
+  recording.rest = recording.start;
+  recording.interior.resize(3, 0);
+  recording.velocity = Points::Zero(3, lattice.nodes.cols());
+  for (int frame = 0; frame < kFrames; ++frame) {
+    recording.points.emplace_back(lattice.nodes +
+                                  Eigen::Map<const Points>(data->qpos, 3, lattice.nodes.cols()));
+    recording.controllers.emplace_back(lattice.held.colwise() + hands.At(frame / kFps));
+    for (int step = 0; step < kSteps; ++step) {
+      const double time = frame / kFps + step * kTimestep;
+      effects.Drive(time, model.get(), data.get());
+      Eigen::Map<Points>(data->mocap_pos, 3, lattice.held.cols()) =
+          lattice.held.colwise() + hands.At(time + kTimestep - effects.latency());
+      Step(*model, data.get());
+    }
+  }
+  return recording;
+}
+
+void AddNoise(double noise, Random* random, Recording* recording) {
+  for (std::size_t t = 1; t < recording->points.size(); ++t) {
+    for (double& value : recording->points[t].reshaped()) {
+      value += noise * std::sqrt(-2 * std::log(1 - (*random)(0, 1))) *
+               std::cos(2 * std::numbers::pi * (*random)(0, 1));
+    }
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& StudyEffects() {
+  static const std::vector<std::string> kEffects = {
+      "air_drag",        "gravity_direction", "stiffening",       "tension_only", "yield",
+      "dry_friction",    "mass_distribution", "tether",           "rest_length",  "control_latency",
+      "stiffness_drift", "uniform_force",     "moving_attraction"};
+  return kEffects;
+}
+
+MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise,
+                              std::uint64_t seed) {
+  Random random(seed);
+  const Lattice lattice = MakeLattice(body);
+  const double size = random(0.8, 1.6);
+  const SceneEffects effects = MakeEffect(effect, size, lattice, &random);
+  MakeEffect("none", 1, lattice, &random);  // so that hands and noise stay what they were
+  const Hands first(&random), second(&random);
+  MadeRecordings made{Record(lattice, effects, first), Record(lattice, effects, second), 0};
+  const Recording without = Record(lattice, {}, first);
+  for (int t = 1; t < kFrames; ++t) {
+    made.displacement += (made.fit.points[t] - without.points[t]).colwise().norm().mean();
+  }
+  made.displacement /= kFrames - 1;
+  made.fit.name = effect + " fit", made.other.name = effect + " other";
+  made.fit.hash = "fit", made.other.hash = "other";
+  AddNoise(noise, &random, &made.fit);
+  AddNoise(noise, &random, &made.other);
+  return made;
+}
+
+}  // namespace physpring
