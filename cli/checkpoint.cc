@@ -33,6 +33,18 @@ const char* ReductionName(TrainOptions::Reduction reduction) {
   return "";
 }
 
+const char* FeaturesName(TrainOptions::Network::Features features) {
+  switch (features) {
+    case TrainOptions::Network::Features::kLearned:
+      return "learned";
+    case TrainOptions::Network::Features::kUntrained:
+      return "untrained";
+    case TrainOptions::Network::Features::kPositions:
+      return "positions";
+  }
+  return "";
+}
+
 // Everything that the result depends on, but the seed, which has a place of its own. Not the number
 // of threads.
 std::string OptionsJson(const TrainOptions& options, const std::string& from) {
@@ -49,6 +61,8 @@ std::string OptionsJson(const TrainOptions& options, const std::string& from) {
     json["latent"] = options.network.latent;
     json["network_epochs"] = options.network.epochs;
     json["network_updates"] = options.network.updates;
+    json["contact_updates"] = options.network.contact_updates;
+    json["features"] = FeaturesName(options.network.features);
   }
   if (!from.empty()) json["from"] = from;
   json["neighbours"] = options.neighbours.empty() ? Json("auto") : Json(options.neighbours);

@@ -34,7 +34,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> recordings;
   std::string output, log, from;
-  std::string reduction = "learned";
+  std::string reduction = "learned", features = "learned";
   std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
   std::string cone = "auto";
   TrainOptions options;  // without what is a word above
@@ -59,6 +59,12 @@ TrainOptions OptionsOf(const Arguments& arguments) {
                                                        {"gramian", Reduction::kGramian},
                                                        {"kmeans", Reduction::kKMeans}}
                           .at(arguments.reduction);
+  using Features = TrainOptions::Network::Features;
+  options.network.features = std::map<std::string, Features>{
+      {"learned", Features::kLearned},
+      {"untrained", Features::kUntrained},
+      {"positions",
+       Features::kPositions}}.at(arguments.features);
   if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
 
   const auto expect = [](bool right, const char* flag, const char* what) {
@@ -70,6 +76,8 @@ TrainOptions OptionsOf(const Arguments& arguments) {
   expect(!two_stage || arguments.optimizer == "auto", "--optimizer", "is of --method full");
   expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
          "needs one ratio for each level but level 0");
+  expect(options.reduction == Reduction::kLearned || arguments.features == "learned", "--features",
+         "is of --reduction learned");
   expect(two_stage || !options.self_collision, "--self-collision", "is of --method two-stage");
   return options;
 }
@@ -183,6 +191,10 @@ void AddHierarchyOptions(CLI::App* command, Arguments* arguments) {
       ->default_str("0.6,0.4,0.3");
   AddChoice(command, "--reduction", &arguments->reduction,
             {"learned", "random", "gramian", "kmeans"}, "how nodes are joined to coarser ones");
+  AddChoice(
+      command, "--features", &arguments->features, {"learned", "untrained", "positions"},
+      "of nodes, by which the learned reduction joins them: the network's, those of a network "
+      "that does not learn, or positions at rest");
   TrainOptions::Network& network = options.network;
   command->add_option("--network-epochs", network.epochs, "of each level; 0: no corrections")
       ->check(WholeNumberBetween(0, 10000))
@@ -190,6 +202,12 @@ void AddHierarchyOptions(CLI::App* command, Arguments* arguments) {
       ->capture_default_str();
   command->add_option("--network-updates", network.updates, "of the network in an epoch (K_model)")
       ->check(WholeNumberBetween(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--contact-updates", network.contact_updates,
+                   "of restitution and friction alone after each epoch (K_col)")
+      ->check(WholeNumberBetween(0, 1000))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--latent", network.latent, "features of a node in the network")

@@ -131,7 +131,7 @@ void HierarchyFit::BeginTrials(const std::vector<std::vector<int>>& candidates) 
 
 // Fits the common factors of one candidate after the other, and begins the level with the best.
 void HierarchyFit::StepTrial() {
-  if (!level_->common_done()) {
+  if (!level_->can_be_judged()) {
     level_->Step();
     status_ = fmt::format("candidate {} of {}, {}", scores_.size() + 1, candidates_.size(),
                           level_->Status());

@@ -2,7 +2,8 @@
 // The fit of a whole twin, one level after the other: level 0 by another fitter, then for each
 // coarser level an assignment (trainer/reduction), the Galerkin projection of the level below, and
 // the fit of its parameters (level_fit.h). A level that is done does not change any more. Of a
-// learned reduction's candidates the one is taken whose common factors fit the recordings best.
+// learned reduction's candidates the one is taken whose common factors predict the recordings best
+// under an observer.
 #ifndef PHYSPRING_TRAINER_HIERARCHY_FIT_H_
 #define PHYSPRING_TRAINER_HIERARCHY_FIT_H_
 

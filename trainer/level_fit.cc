@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "trainer/adam.h"
 #include "trainer/fit_model.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/lifted_loss.h"
@@ -34,6 +33,20 @@ int MostSubsteps(const TwinLevel& dense, double fps) {
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
 }
 
+void StoreAdam(const std::string& name, const Adam& adam, StateArrays* arrays) {
+  const std::string prefix = "train/level/" + name + "_adam";
+  (*arrays)[prefix + "/steps"] = StoreCounters({adam.steps});
+  (*arrays)[prefix + "/mean"] = StoreVector(adam.mean);
+  (*arrays)[prefix + "/mean_square"] = StoreVector(adam.mean_square);
+}
+
+void LoadAdam(const std::string& name, const StateArrays& arrays, Adam* adam) {
+  const std::string prefix = "level/" + name + "_adam";
+  adam->steps = LoadCounters(arrays, prefix + "/steps", 1)[0];
+  adam->mean = LoadVector(arrays, prefix + "/mean", adam->mean.size());
+  adam->mean_square = LoadVector(arrays, prefix + "/mean_square", adam->mean_square.size());
+}
+
 // Of points, from the mean square of their coordinates' residuals.
 double Millimetres(double mean_square) { return 1e3 * std::sqrt(3 * mean_square); }
 
@@ -51,7 +64,11 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
       gain_(kFirstGain),
       common_(Eigen::VectorXd::Zero(CommonParameters().size())),
       weights_(weights),
-      best_weights_(weights) {}
+      contact_(Eigen::VectorXd::Zero(2)),
+      weights_adam_(weights.size()),
+      contact_adam_(2),
+      best_weights_(weights),
+      best_contact_(contact_) {}
 
 LiftedMotion::Options LevelFit::MotionOptions(int threads, double gain) const {
   LiftedMotion::Options motion;
@@ -69,14 +86,24 @@ Parameters LevelFit::CommonParameters() const {
 }
 
 Parameters LevelFit::SpringParameters() const {
-  return SpringFactors(CorrectedSystem(best_weights_), data_.recordings[0]);
+  return SpringFactors(CorrectedSystem(), data_.recordings[0]);
 }
 
-// The common factors and the network's corrections.
-SpringMassSystem LevelFit::CorrectedSystem(const Eigen::VectorXd& weights) const {
-  SpringMassSystem base = CommonParameters().Apply(common_);
+// What the network corrects: the common factors, and the contact's coefficients as they are
+// updated. The network adds to the same logits.
+SpringMassSystem LevelFit::NetworkBase(const Eigen::VectorXd& contact) const {
+  const SpringMassSystem base = CommonParameters().Apply(common_);
+  if (contact.isZero(0)) return base;
+  Features of_system(1, 3);
+  of_system << 0, contact[0], contact[1];
+  return ApplyCorrections(base, Features::Zero(base.spring_count(), 2), of_system);
+}
+
+// With the best corrections so far.
+SpringMassSystem LevelFit::CorrectedSystem() const {
+  const SpringMassSystem base = NetworkBase(best_contact_);
   if (options_.network.epochs == 0) return base;
-  return LevelNetwork(network_, twin_, base, weights).corrected();
+  return LevelNetwork(network_, twin_, base, best_weights_).corrected();
 }
 
 void LevelFit::StepCommon() {
@@ -109,10 +136,12 @@ void LevelFit::StepCommon() {
 
 void LevelFit::BeginNetwork() {
   stage_ = Stage::kNetwork;
+  weights_ = best_weights_ = network_.WithoutCorrections(weights_);
   iteration_ = best_iteration_ = 0;
   best_score_ = std::numeric_limits<double>::infinity();
-  rate_ = options_.network.learning_rate;
-  adam_mean_ = adam_mean_square_ = Eigen::VectorXd::Zero(weights_.size());
+  rate_ = 1;
+  weights_adam_ = Adam(weights_.size());
+  contact_adam_ = Adam(contact_.size());
 }
 
 void LevelFit::BeginSprings() {
@@ -139,42 +168,60 @@ double LevelFit::HeldBackError(const SpringMassSystem& system) const {
   return sum / static_cast<double>(episodes.size());
 }
 
-// One update of the network's weights by the loss of the fit frames that are not held back.
+int LevelFit::UpdatesPerEpoch() const {
+  const bool contact = data_.recordings[0].ground.has_value();
+  return options_.network.updates + (contact ? options_.network.contact_updates : 0);
+}
+
+void LevelFit::Keep(double score) {
+  best_score_ = score;
+  best_weights_ = weights_;
+  best_contact_ = contact_;
+  best_iteration_ = iteration_;
+}
+
+void LevelFit::TurnBack() {
+  weights_ = best_weights_;
+  contact_ = best_contact_;
+}
+
+// One update of the network's weights, or of the contact's coefficients, by the loss of the fit
+// frames that are not held back.
 void LevelFit::StepNetwork() {
-  const LevelNetwork network(network_, twin_, CommonParameters().Apply(common_), weights_);
+  const LevelNetwork network(network_, twin_, NetworkBase(contact_), weights_);
   const SpringMassSystem& system = network.corrected();
   const double score = HeldBackError(system);
-  if (score < best_score_) {
-    best_score_ = score;
-    best_weights_ = weights_;
-    best_iteration_ = iteration_;
-  }
+  if (score < best_score_) Keep(score);
   status_ = fmt::format("level {}, network: {:.3f} mm on held-back frames", level_, 1e3 * score);
-  const LiftedMotion motion(twin_, level_, held_back_.FitEpisodes(),
-                            MotionOptions(options_.threads));
-  const std::optional<LiftedLoss> loss = ComputeLiftedLoss(motion, system);
-  const bool worse = iteration_ - best_iteration_ >= kPatience * options_.network.updates;
-  if (worse || iteration_ >= options_.network.epochs * options_.network.updates) {
-    weights_ = best_weights_;
+  const int epoch = iteration_ / UpdatesPerEpoch();
+  const bool worse = iteration_ - best_iteration_ >= kPatience * UpdatesPerEpoch();
+  if (worse || epoch >= options_.network.epochs) {
+    TurnBack();
     BeginSprings();
     return;
   }
+  const bool of_weights = iteration_ % UpdatesPerEpoch() < options_.network.updates;
   ++iteration_;
+  const LiftedMotion motion(twin_, level_, held_back_.FitEpisodes(),
+                            MotionOptions(options_.threads));
+  const std::optional<LiftedLoss> loss = ComputeLiftedLoss(motion, system);
   if (!loss) {  // too far: back to the best weights, and on in shorter steps
-    weights_ = best_weights_;
+    TurnBack();
     rate_ /= 4;
     return;
   }
-  const Eigen::VectorXd weights_bar = network.Adjoint(loss->gradient);
-  Adam adam(weights_.size());
-  adam.steps = iteration_ - 1;
-  adam.mean = adam_mean_;
-  adam.mean_square = adam_mean_square_;
-  const int epoch = (iteration_ - 1) / options_.network.updates;
-  const double rate = rate_ * std::pow(options_.network.decay, epoch);
-  adam.Step(weights_bar, Eigen::VectorXd::Constant(weights_.size(), rate), &weights_);
-  adam_mean_ = adam.mean;
-  adam_mean_square_ = adam.mean_square;
+  const double slower = rate_ * std::pow(options_.network.decay, epoch);  // than at first
+  if (of_weights) {
+    const double rate = slower * options_.network.learning_rate;
+    weights_adam_.Step(network.Adjoint(loss->gradient),
+                       Eigen::VectorXd::Constant(weights_.size(), rate), &weights_);
+    return;
+  }
+  Features springs_bar, system_bar;  // of the same logits
+  CorrectionsAdjoint(system, loss->gradient, &springs_bar, &system_bar);
+  const double rate = slower * options_.network.contact_rate;
+  contact_adam_.Step(system_bar.rightCols(2).transpose(), Eigen::Vector2d::Constant(rate),
+                     &contact_);
 }
 
 void LevelFit::StepSprings() {
@@ -232,7 +279,7 @@ double LevelFit::Progress() const {
     case Stage::kCommon:
       return 0.2 * (gain_ - kFirstGain) / (kLastGain - kFirstGain + 1);
     case Stage::kNetwork:
-      return 0.2 + 0.2 * iteration_ / (options_.network.epochs * options_.network.updates);
+      return 0.2 + 0.2 * iteration_ / (options_.network.epochs * UpdatesPerEpoch());
     case Stage::kSprings:
       return 0.4 + 0.6 * iteration_ / kGaussNewtonSteps;
     case Stage::kDone:
@@ -240,6 +287,8 @@ double LevelFit::Progress() const {
   }
   return 0;
 }
+
+bool LevelFit::can_be_judged() const { return stage_ != Stage::kCommon || gain_ == kLastGain; }
 
 StateArrays LevelFit::Save() const {
   Eigen::VectorXd scalars(4);
@@ -251,10 +300,12 @@ StateArrays LevelFit::Save() const {
       {"train/level/common", StoreVector(common_)},
       {"train/level/springs", StoreVector(springs_)},
       {"train/level/weights", StoreVector(weights_)},
-      {"train/level/best_weights", StoreVector(best_weights_)}};
+      {"train/level/best_weights", StoreVector(best_weights_)},
+      {"train/level/contact", StoreVector(contact_)},
+      {"train/level/best_contact", StoreVector(best_contact_)}};
   if (stage_ == Stage::kNetwork) {
-    arrays["train/level/adam_mean"] = StoreVector(adam_mean_);
-    arrays["train/level/adam_mean_square"] = StoreVector(adam_mean_square_);
+    StoreAdam("weights", weights_adam_, &arrays);
+    StoreAdam("contact", contact_adam_, &arrays);
   }
   return arrays;
 }
@@ -273,9 +324,11 @@ void LevelFit::Load(const StateArrays& state) {
   common_ = LoadVector(state, "level/common", common_.size());
   weights_ = LoadVector(state, "level/weights", weights_.size());
   best_weights_ = LoadVector(state, "level/best_weights", weights_.size());
+  contact_ = LoadVector(state, "level/contact", contact_.size());
+  best_contact_ = LoadVector(state, "level/best_contact", contact_.size());
   if (stage_ == Stage::kNetwork) {
-    adam_mean_ = LoadVector(state, "level/adam_mean", weights_.size());
-    adam_mean_square_ = LoadVector(state, "level/adam_mean_square", weights_.size());
+    LoadAdam("weights", state, &weights_adam_);
+    LoadAdam("contact", state, &contact_adam_);
   }
   if (stage_ == Stage::kSprings || stage_ == Stage::kDone) {
     springs_ = LoadVector(state, "level/springs", SpringParameters().size());
@@ -287,7 +340,7 @@ SpringMassSystem LevelFit::System() const {
     case Stage::kCommon:
       return CommonParameters().Apply(common_);
     case Stage::kNetwork:
-      return CorrectedSystem(best_weights_);
+      return CorrectedSystem();
     case Stage::kSprings:
     case Stage::kDone:
       return SpringParameters().Apply(springs_);

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fit of the parameters of a coarse level, whose topology, masses and first values are a
-// Galerkin projection, to the measured points through the lift, in two stages:
+// Galerkin projection, to the measured points through the lift, in three stages:
 //   common   the same few factors for all springs (parameters.h), by Levenberg-Marquardt, under an
 //            observer whose gain falls to 0 (observer.h)
+//   network  corrections by the graph network, by Adam: epochs of updates of its weights, each
+//            followed by updates of the contact's coefficients alone (the paper's K_model and
+//            K_col); what predicts held-back frames best counts
 //   springs  every spring's own stiffness, dashpot and rest length, by Gauss-Newton
 #ifndef PHYSPRING_TRAINER_LEVEL_FIT_H_
 #define PHYSPRING_TRAINER_LEVEL_FIT_H_
 
 #include <string>
 
+#include "trainer/adam.h"
 #include "trainer/fitter.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/held_back.h"
@@ -39,8 +43,9 @@ class LevelFit {
   SpringMassSystem System() const;
   int SubstepsPerSecond() const;
   const Eigen::VectorXd& weights() const { return best_weights_; }
-  // Whether the common factors are fitted, and the mean square of the residuals then, m^2.
-  bool common_done() const { return stage_ != Stage::kCommon; }
+  // Whether the common factors are fitted under the observer's last gain above 0, and the mean
+  // square of the residuals then, m^2: what candidates are judged by.
+  bool can_be_judged() const;
   double mean_square() const { return mean_square_; }
 
  private:
@@ -49,12 +54,16 @@ class LevelFit {
   LiftedMotion::Options MotionOptions(int threads, double gain = 0) const;
   Parameters CommonParameters() const;
   Parameters SpringParameters() const;
-  SpringMassSystem CorrectedSystem(const Eigen::VectorXd& weights) const;
+  SpringMassSystem NetworkBase(const Eigen::VectorXd& contact) const;
+  SpringMassSystem CorrectedSystem() const;
   double HeldBackError(const SpringMassSystem& system) const;
   void BeginNetwork();
   void BeginSprings();
   void StepCommon();
+  int UpdatesPerEpoch() const;
   void StepNetwork();
+  void Keep(double score);
+  void TurnBack();
   void StepSprings();
 
   const FitData& data_;
@@ -72,11 +81,13 @@ class LevelFit {
   double damping_ = 1e-2;
   double mean_square_ = 0;  // of the residuals
   Eigen::VectorXd common_, springs_;
-  Eigen::VectorXd weights_, adam_mean_, adam_mean_square_;
-  Eigen::VectorXd best_weights_;  // on held-back frames ...
-  double best_score_ = 0;         // ... their track error, m
+  Eigen::VectorXd weights_;
+  Eigen::VectorXd contact_;  // added to the logits of the ground's restitution and friction
+  Adam weights_adam_, contact_adam_;
+  Eigen::VectorXd best_weights_, best_contact_;  // on held-back frames ...
+  double best_score_ = 0;                        // ... their track error, m
   int best_iteration_ = 0;
-  double rate_ = 0;  // of learning, at the first epoch
+  double rate_ = 1;  // of learning, relative to the options'
   std::string status_;
 };
 

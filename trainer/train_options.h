@@ -43,7 +43,13 @@ struct TrainOptions {
     int epochs = 20;  // of each level
     int updates = 1;  // an epoch (the paper's K_model)
     double learning_rate = 1e-3;
-    double decay = 0.9;  // of the learning rate, an epoch
+    double decay = 0.9;          // of the learning rate, an epoch
+    int contact_updates = 1;     // of the contact's coefficients after each epoch (K_col)
+    double contact_rate = 1e-2;  // of their logits
+    // What decides which nodes a learned reduction joins: the features of the network, which learn;
+    // those of one that stays as it was drawn; nothing but rest positions.
+    enum class Features { kLearned, kUntrained, kPositions };
+    Features features = Features::kLearned;
   };
   Network network;
 };

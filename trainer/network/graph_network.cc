@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/network/graph_network.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -18,17 +19,30 @@ bool IsController(const SpringMassSystem& system, int column) {
   return column >= system.node_count();
 }
 
-// Position centred and by half the diagonal of the bounding box, log of mass by mean mass, type
-// (free node, controller), sin and cos of 2^o pi x.
+// Rows: the body's principal axes, each by the body's extent along it, so that every direction
+// counts alike however thin the body is; directions in which it has none by its greatest.
+Eigen::Matrix3d ScaledAxes(const Points& centred) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> moments(centred * centred.transpose());
+  const Eigen::Matrix3d axes = moments.eigenvectors().transpose();
+  const Points along = axes * centred;
+  const Eigen::Vector3d extent = along.rowwise().maxCoeff() - along.rowwise().minCoeff();
+  const double most = std::max(extent.maxCoeff(), 1e-9);
+  constexpr double kFlat = 0.01;
+  const Eigen::Vector3d scale =
+      (extent.array() > kFlat * most).select(extent.cwiseInverse(), 1 / most);
+  return scale.asDiagonal() * axes;
+}
+
+// Position along the scaled axes, log of mass by mean mass, type (free node, controller), sin and
+// cos of 2^o pi x.
 Features NodeInputs(const SpringMassSystem& system) {
   const Points& x = system.position;
   const Points nodes = x.leftCols(system.node_count());
-  const Eigen::Vector3d low = nodes.rowwise().minCoeff(), high = nodes.rowwise().maxCoeff();
-  const double half = std::max(0.5 * (high - low).norm(), 1e-9);
-  const Eigen::Vector3d centre = 0.5 * (low + high);
+  const Eigen::Vector3d centre = nodes.rowwise().mean();
+  const Eigen::Matrix3d axes = ScaledAxes(nodes.colwise() - centre);
   Features inputs = Features::Zero(x.cols(), kNodeInputs);
   for (int i = 0; i < x.cols(); ++i) {
-    const Eigen::Vector3d scaled = (x.col(i) - centre) / half;
+    const Eigen::Vector3d scaled = axes * (x.col(i) - centre);
     inputs.row(i).head<3>() = scaled.transpose();
     const bool controller = IsController(system, i);
     if (!controller) inputs(i, 3) = std::log(system.mass[i] / system.mass.mean());
@@ -102,6 +116,14 @@ GraphNetwork::GraphNetwork(int latent, std::uint64_t seed) {
   spring_head_ = layout.TwoLayers(latent, latent, 2, true);
   system_head_ = layout.TwoLayers(latent, latent, 3, true);
   first_weights_ = layout.Values();
+}
+
+Eigen::VectorXd GraphNetwork::WithoutCorrections(Eigen::VectorXd weights) const {
+  for (const Mlp* head : {&spring_head_, &system_head_}) {
+    const LinearLayer& last = head->second;
+    weights.segment(last.offset, (last.inputs + 1) * last.outputs).setZero();
+  }
+  return weights;
 }
 
 void GraphNetwork::Messages(const SpringMassSystem& system, Encoded* encoded, int step,

@@ -9,6 +9,7 @@
 //            log-stiffness within ln 10 and log-dashpot within ln 4 from e of each spring (plus
 //            what the encoder had: a skip connection), log-drag within ln 4 and the logits of
 //            restitution and friction within 3 from the mean of h
+// Positions are taken along the body's principal axes, each by the body's extent along it.
 // The heads' last layers start at 0, so that the first corrections are 0. Springs have no
 // direction: a feature does not depend on which end is named first. Controllers are nodes with a
 // type of their own, at all levels the same.
@@ -38,6 +39,8 @@ class GraphNetwork {
   };
 
   const Eigen::VectorXd& first_weights() const { return first_weights_; }
+  // These weights with the heads' last layers at 0: all corrections are 0.
+  Eigen::VectorXd WithoutCorrections(Eigen::VectorXd weights) const;
 
   struct Encoded {
     Tape::Node nodes, springs;  // (nodes + controllers) x latent, springs x latent

@@ -6,10 +6,6 @@
 #include <map>
 #include <numeric>
 
-#include "trainer/reduction/galerkin.h"
-#include "twin/hierarchy.h"
-#include "twin/lift.h"
-
 namespace physpring {
 namespace {
 
@@ -17,29 +13,59 @@ namespace {
 struct Proposal {
   double score;
   int from, to;
+  int way;  // 2 pair + way of a spring between them
 };
 
 // Mean scores of all springs between clusters, both ways, the best first.
 std::vector<Proposal> Propose(const std::vector<std::array<int, 2>>& pairs,
                               const Eigen::MatrixX2d& scores, const Assignment& cluster) {
-  std::map<std::array<int, 2>, std::array<double, 2>> sum_count;
+  struct Sum {
+    double scores = 0;
+    int count = 0, way = 0;
+  };
+  std::map<std::array<int, 2>, Sum> sums;
   for (std::size_t e = 0; e < pairs.size(); ++e) {
     const int a = cluster[pairs[e][0]], b = cluster[pairs[e][1]];
     if (a == b) continue;
     for (int way = 0; way < 2; ++way) {
-      auto& [sum, count] = sum_count[way == 0 ? std::array{a, b} : std::array{b, a}];
-      sum += scores(static_cast<Eigen::Index>(e), way);
-      ++count;
+      Sum& sum = sums[way == 0 ? std::array{a, b} : std::array{b, a}];
+      sum.scores += scores(static_cast<Eigen::Index>(e), way);
+      ++sum.count;
+      sum.way = 2 * static_cast<int>(e) + way;
     }
   }
   std::vector<Proposal> proposals;
-  for (const auto& [ways, sum] : sum_count) {
-    proposals.push_back({sum[0] / sum[1], ways[0], ways[1]});
+  for (const auto& [ends, sum] : sums) {
+    proposals.push_back({sum.scores / sum.count, ends[0], ends[1], sum.way});
   }
   std::stable_sort(proposals.begin(), proposals.end(),
                    [](const Proposal& p, const Proposal& q) { return p.score > q.score; });
   return proposals;
 }
+
+// The ways that each node can go: 2 pair + way.
+std::vector<std::vector<int>> WaysOf(const SpringMassSystem& system) {
+  const std::vector<std::array<int, 2>> pairs = FreePairs(system);
+  std::vector<std::vector<int>> ways(system.node_count());
+  for (int e = 0; e < static_cast<int>(pairs.size()); ++e) {
+    for (int way = 0; way < 2; ++way) ways[pairs[e][way]].push_back(2 * e + way);
+  }
+  return ways;
+}
+
+// The softmax of -D and of staying: its shift and its sum.
+struct Softmax {
+  double top, sum, temperature;
+
+  Softmax(const std::vector<int>& ways, const Eigen::VectorXd& distance, double stay,
+          double temperature_)
+      : top(stay), sum(0), temperature(temperature_) {
+    for (int way : ways) top = std::max(top, -distance[way / 2]);
+    sum = Weight(stay);
+    for (int way : ways) sum += Weight(-distance[way / 2]);
+  }
+  double Weight(double score) const { return std::exp((score - top) / temperature); }
+};
 
 }  // namespace
 
@@ -71,10 +97,11 @@ Choice ChooseClusters(const SpringMassSystem& system, const Eigen::MatrixX2d& sc
   Choice choice;
   Assignment& cluster = choice.assignment;
   cluster.resize(graph.node_count());
+  choice.chosen.assign(graph.node_count(), Choice::kStays);
   std::iota(cluster.begin(), cluster.end(), 0);
   int left = graph.node_count();
   const int budget = ClusterBudget(graph, nodes);
-  while (left > budget) {
+  for (bool first = true; left > budget; first = false) {
     enum : char { kFree, kStays, kGoes };
     std::vector<char> role(graph.node_count(), kFree);
     std::vector<int> target(graph.node_count());
@@ -86,6 +113,7 @@ Choice ChooseClusters(const SpringMassSystem& system, const Eigen::MatrixX2d& sc
       role[p.to] = kStays;
       target[p.from] = p.to;
       choice.stay = p.score;
+      if (first) choice.chosen[p.from] = p.way;
       --left;
     }
     for (int& c : cluster) c = target[c];
@@ -94,91 +122,30 @@ Choice ChooseClusters(const SpringMassSystem& system, const Eigen::MatrixX2d& sc
   return choice;
 }
 
-ProjectionLoss::ProjectionLoss(const Twin& twin, std::vector<ParticleMotion> motions,
-                               const Eigen::Vector3d& up)
-    : twin_(twin),
-      owner_(NodesOfParticles(twin, static_cast<int>(twin.levels.size()) - 1)),
-      motions_(std::move(motions)),
-      up_(up) {}
-
-Twin ProjectionLoss::WithLevel(const Assignment& assignment) const {
-  Twin twin = twin_;
-  twin.levels.push_back(
-      {Project(twin_.levels.back().system, assignment, up_).system, assignment, 0});
-  return twin;
+double LogProbability(const SpringMassSystem& system, const Eigen::VectorXd& distance,
+                      const Choice& choice, double temperature) {
+  const std::vector<std::vector<int>> ways = WaysOf(system);
+  double log_probability = 0;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const Softmax softmax(ways[i], distance, choice.stay, temperature);
+    const int way = choice.chosen[i];
+    const double score = way == Choice::kStays ? choice.stay : -distance[way / 2];
+    log_probability += (score - softmax.top) / temperature - std::log(softmax.sum);
+  }
+  return log_probability;
 }
 
-double ProjectionLoss::Error(const Assignment& assignment) const {
-  const Twin twin = WithLevel(assignment);
-  const int level = static_cast<int>(twin_.levels.size());
-  double sum = 0, count = 0;
-  for (const ParticleMotion& motion : motions_) {
-    const Lift lift(twin, level, motion.start);
-    for (const Points& frame : motion.frames) {
-      sum += (lift.Apply(AverageOverMembers(twin, level, frame)) - frame).squaredNorm();
-      count += static_cast<double>(frame.cols());
-    }
-  }
-  return std::sqrt(sum / count);
-}
-
-Eigen::VectorXd ProjectionLoss::DistanceGradient(const Choice& choice,
-                                                 const Eigen::MatrixX2d& scores,
-                                                 double temperature) const {
-  const Assignment& cluster = choice.assignment;
-  const Twin twin = WithLevel(cluster);
-  const int level = static_cast<int>(twin_.levels.size());
-  const std::vector<std::array<int, 2>> pairs = FreePairs(twin_.levels.back().system);
-  struct Candidate {
-    int pair, way, cluster;
-    double carried = 0;  // d loss / d P
-  };
-  std::vector<std::vector<Candidate>> candidates(twin_.levels.back().system.node_count());
-  for (int e = 0; e < static_cast<int>(pairs.size()); ++e) {
-    candidates[pairs[e][0]].push_back({e, 0, cluster[pairs[e][1]]});
-    candidates[pairs[e][1]].push_back({e, 1, cluster[pairs[e][0]]});
-  }
-  for (int i = 0; i < static_cast<int>(candidates.size()); ++i) {
-    candidates[i].push_back({-1, 0, cluster[i]});  // to stay
-  }
-  double sum = 0;
-  for (const ParticleMotion& motion : motions_) {
-    const Lift lift(twin, level, motion.start);
-    const Points start = AverageOverMembers(twin, level, motion.start);
-    for (const Points& frame : motion.frames) {
-      const Points nodes = AverageOverMembers(twin, level, frame);
-      const std::vector<Eigen::Matrix3d> rotations = lift.Rotations(nodes);
-      const Points off = lift.Apply(nodes) - frame;
-      sum += off.squaredNorm();
-      for (int p = 0; p < frame.cols(); ++p) {
-        for (Candidate& c : candidates[owner_[p]]) {
-          // forward: x_p = sum_J P_iJ (X_J + R_J (x_p(0) - X_J(0))), loss = sum |x_p - frame_p|^2
-          const Eigen::Vector3d carried =
-              nodes.col(c.cluster) +
-              rotations[c.cluster] * (motion.start.col(p) - start.col(c.cluster));
-          c.carried += 2 * off.col(p).dot(carried - frame.col(p));
-        }
-      }
-    }
-  }
-  Eigen::VectorXd distance_bar = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(pairs.size()));
-  for (const auto& choices : candidates) {
-    // forward: P = softmax(score / lambda), score = -D + noise
-    Eigen::VectorXd p(static_cast<Eigen::Index>(choices.size()));
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-      const Candidate& c = choices[k];
-      p[static_cast<Eigen::Index>(k)] = c.pair < 0 ? choice.stay : scores(c.pair, c.way);
-    }
-    p = ((p.array() - p.maxCoeff()) / temperature).exp();
-    p /= p.sum();
-    double mean = 0;
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-      mean += p[static_cast<Eigen::Index>(k)] * choices[k].carried;
-    }
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-      if (choices[k].pair < 0) continue;
-      distance_bar[choices[k].pair] -=
-          p[static_cast<Eigen::Index>(k)] * (choices[k].carried - mean) / temperature / sum;
+Eigen::VectorXd LogProbabilityGradient(const SpringMassSystem& system,
+                                       const Eigen::VectorXd& distance, const Choice& choice,
+                                       double temperature) {
+  const std::vector<std::vector<int>> ways = WaysOf(system);
+  Eigen::VectorXd distance_bar = Eigen::VectorXd::Zero(distance.size());
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    // forward: log P = s_chosen / lambda - log sum exp(s / lambda), s = -D
+    const Softmax softmax(ways[i], distance, choice.stay, temperature);
+    for (int way : ways[i]) {
+      const double p = softmax.Weight(-distance[way / 2]) / softmax.sum;
+      distance_bar[way / 2] -= ((way == choice.chosen[i] ? 1 : 0) - p) / temperature;
     }
   }
   return distance_bar;

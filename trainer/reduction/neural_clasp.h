@@ -8,11 +8,9 @@
 // that stays, until exactly the budget is left; the last score taken is the logit of staying. Where
 // the choices do not suffice, the clusters choose again among themselves.
 //
-// What the features learn from is the motion of level 0: the loss of an assignment is the mean
-// squared distance of its particles from themselves averaged to clusters and lifted again, the
-// least error that a level with these clusters can have. Its gradient goes straight through the
-// hard choice: the derivative with respect to P_ij is the one of carrying i's particles by j's
-// cluster.
+// What the features learn from is how well the levels that are drawn predict the recordings
+// (topology_fit.h): d log P / d D of a whole choice makes good draws more likely (the score
+// function of Williams, Machine Learning 8, 1992).
 #ifndef PHYSPRING_TRAINER_REDUCTION_NEURAL_CLASP_H_
 #define PHYSPRING_TRAINER_REDUCTION_NEURAL_CLASP_H_
 
@@ -21,7 +19,7 @@
 #include <vector>
 
 #include "trainer/reduction/assignment.h"
-#include "twin/twin.h"
+#include "twin/spring_mass_system.h"
 
 namespace physpring {
 
@@ -32,39 +30,24 @@ std::vector<std::array<int, 2>> FreePairs(const SpringMassSystem& system);
 Eigen::MatrixX2d DrawScores(const Eigen::VectorXd& distance, double temperature,
                             std::mt19937_64* random);
 
-// Hard clusters from the scores.
+// Hard clusters from the scores, and what each node chose in the first round: 2 pair + way, or
+// kStays.
 struct Choice {
+  static constexpr int kStays = -1;
   Assignment assignment;
+  std::vector<int> chosen;
   double stay = 0;  // the score that staying had
 };
 Choice ChooseClusters(const SpringMassSystem& system, const Eigen::MatrixX2d& scores, int nodes);
 
-// Motions of level 0's particles: where they start, and some of the frames (3 x particles, m).
-struct ParticleMotion {
-  Points start;
-  std::vector<Points> frames;
-};
+// d log P / d D of all nodes' first choices together, one row a pair; the score of staying is held.
+Eigen::VectorXd LogProbabilityGradient(const SpringMassSystem& system,
+                                       const Eigen::VectorXd& distance, const Choice& choice,
+                                       double temperature);
 
-class ProjectionLoss {
- public:
-  // Of assignments of the last level of `twin`. `up` as in Project.
-  ProjectionLoss(const Twin& twin, std::vector<ParticleMotion> motions, const Eigen::Vector3d& up);
-
-  // Root mean square over particles and frames, m.
-  double Error(const Assignment& assignment) const;
-
-  // d log(mean square) / d D (pairs), for the assignment that was chosen from the scores.
-  Eigen::VectorXd DistanceGradient(const Choice& choice, const Eigen::MatrixX2d& scores,
-                                   double temperature) const;
-
- private:
-  Twin WithLevel(const Assignment& assignment) const;
-
-  Twin twin_;
-  std::vector<int> owner_;  // the last level's node of each particle
-  std::vector<ParticleMotion> motions_;
-  Eigen::Vector3d up_;
-};
+// log P, of which that is the gradient.
+double LogProbability(const SpringMassSystem& system, const Eigen::VectorXd& distance,
+                      const Choice& choice, double temperature);
 
 }  // namespace physpring
 

@@ -11,43 +11,18 @@
 #include "trainer/held_back.h"
 #include "trainer/lifted_motion.h"
 #include "trainer/network/level_network.h"
-#include "twin/error.h"
+#include "trainer/parallel.h"
 
 namespace physpring {
 namespace {
 
 constexpr int kIterations = 40;
-constexpr int kDraws = 4;  // an iteration
+constexpr int kDraws = 6;  // an iteration
 constexpr double kHottest = 1, kColdest = 0.1;
 constexpr std::size_t kCandidates = 3;
 constexpr int kMostRecordings = 4;
-constexpr int kMostFrames = 16;  // of a recording
-
-// The motion of level 0, which is seen everywhere and free of noise.
-std::vector<ParticleMotion> DenseMotion(const FitData& data, const TrainOptions& options,
-                                        const Twin& twin) {
-  LiftedMotion::Options motion_options;
-  motion_options.rollout.single_precision = options.single_precision;
-  motion_options.rollout.controller_velocity = twin.controller_velocity;
-  motion_options.rollout.substeps = options.substeps;
-  motion_options.threads = options.threads;
-  motion_options.most_substeps = std::numeric_limits<int>::max();
-  const LiftedMotion dense(twin, 0, FitEpisodes(data, kMostRecordings), motion_options);
-  const SpringMassSystem& system = twin.levels[0].system;
-  const auto moved = dense.Run(system, dense.Substeps(system));
-  if (!moved)
-    throw Error(fmt::format("twin {}: level 0 diverges on its own recordings", twin.name));
-  std::vector<ParticleMotion> motions;
-  for (int e = 0; e < dense.episode_count(); ++e) {
-    ParticleMotion& motion = motions.emplace_back();
-    motion.start = moved->particles[e][0];
-    const int frames = dense.frames(e), kept = std::min(kMostFrames, frames - 1);
-    for (int k = 1; k <= kept; ++k) {
-      motion.frames.push_back(moved->particles[e][k * (frames - 1) / kept]);
-    }
-  }
-  return motions;
-}
+constexpr double kGain = 0.1;      // of the observer
+constexpr double kDiverged = 1e3;  // m, the error of a level that diverges
 
 }  // namespace
 
@@ -58,10 +33,33 @@ TopologyFit::TopologyFit(const FitData& data, const TrainOptions& options, const
       twin_(twin),
       network_(network),
       nodes_(nodes),
-      loss_(twin, DenseMotion(data, options, twin), up),
+      up_(up),
+      episodes_(FitEpisodes(data, kMostRecordings)),
       weights_(weights),
       adam_mean_(Eigen::VectorXd::Zero(weights.size())),
       adam_mean_square_(adam_mean_) {}
+
+// The mean track error, m, in single precision: for a choice that is enough.
+double TopologyFit::PredictionError(const Assignment& assignment) const {
+  Twin twin = twin_;
+  twin.levels.push_back(
+      {Project(twin_.levels.back().system, assignment, up_).system, assignment, 0});
+  LiftedMotion::Options options;
+  options.rollout.single_precision = true;
+  options.rollout.controller_velocity = twin.controller_velocity;
+  options.rollout.substeps = options_.substeps;
+  options.rollout.observer_gain = kGain;
+  options.most_substeps = std::numeric_limits<int>::max();
+  const LiftedMotion level(twin, static_cast<int>(twin_.levels.size()), episodes_, options);
+  const SpringMassSystem& system = twin.levels.back().system;
+  const auto moved = level.Run(system, level.Substeps(system));
+  if (!moved) return kDiverged;
+  double sum = 0;
+  for (int e = 0; e < level.episode_count(); ++e) {
+    sum += MeanTrackError(moved->particles[e], level.recording(e), 1, level.frames(e)).value_or(0);
+  }
+  return sum / level.episode_count();
+}
 
 void TopologyFit::Consider(const Assignment& assignment, double error) {
   if (std::find(candidates_.begin(), candidates_.end(), assignment) != candidates_.end()) return;
@@ -79,44 +77,73 @@ double TopologyFit::Temperature() const {
   return kHottest * std::pow(kColdest / kHottest, part);
 }
 
-bool TopologyFit::Step() {
-  if (iteration_ > kIterations) return false;
-  Tape tape(weights_);
+Eigen::VectorXd TopologyFit::Draw(const Eigen::VectorXd& distance, double temperature) {
   const SpringMassSystem& system = twin_.levels.back().system;
-  const Tape::Node latent = network_.Encode(LevelsOf(twin_), &tape).nodes;
-  const Tape::Node apart = tape.Distance(latent, FreePairs(system));
-  // in units of the mean distance, so that the temperature means the same at all levels
-  const double unit = tape.value(apart).mean();
-  const Eigen::VectorXd distance = tape.value(apart).col(0) / unit;
-
-  const bool last = iteration_ == kIterations;
-  const double temperature = last ? 0 : Temperature();
   std::mt19937_64 random(options_.seed * 1000003 + 1009 * twin_.levels.size() + iteration_);
-  Eigen::VectorXd distance_bar = Eigen::VectorXd::Zero(distance.size());
-  double mean_error = 0;
-  const int draws = last ? 1 : kDraws;
+  const int draws = temperature == 0 ? 1 : kDraws;
+  std::vector<Choice> choices;
   for (int draw = 0; draw < draws; ++draw) {
-    const Eigen::MatrixX2d scores = DrawScores(distance, temperature, &random);
-    const Choice choice = ChooseClusters(system, scores, nodes_);
-    const double error = loss_.Error(choice.assignment);
-    mean_error += error / draws;
-    Consider(choice.assignment, error);
-    if (!last) distance_bar += loss_.DistanceGradient(choice, scores, temperature) / draws;
+    choices.push_back(ChooseClusters(system, DrawScores(distance, temperature, &random), nodes_));
+  }
+  std::vector<double> errors(draws);
+  ParallelFor(draws, options_.threads,
+              [&](int draw) { errors[draw] = PredictionError(choices[draw].assignment); });
+
+  Eigen::VectorXd distance_bar = Eigen::VectorXd::Zero(distance.size());
+  for (int draw = 0; draw < draws; ++draw) {
+    Consider(choices[draw].assignment, errors[draw]);
+    if (temperature == 0) continue;
+    int worse_than = 0;  // minus how many it is better than
+    for (double other : errors) worse_than += (other < errors[draw]) - (other > errors[draw]);
+    distance_bar += static_cast<double>(worse_than) / draws *
+                    LogProbabilityGradient(system, distance, choices[draw], temperature);
   }
   status_ = fmt::format("level {}, topology: {:.3f} mm (best {:.3f} mm)", twin_.levels.size(),
-                        1e3 * mean_error, 1e3 * errors_[0]);
-  if (!last) {
-    Eigen::VectorXd weights_bar = Eigen::VectorXd::Zero(weights_.size());
-    tape.Backward({{apart, distance_bar / unit}}, &weights_bar);
-    Adam adam(weights_.size());
-    adam.steps = iteration_;
-    adam.mean = adam_mean_;
-    adam.mean_square = adam_mean_square_;
-    adam.Step(weights_bar,
-              Eigen::VectorXd::Constant(weights_.size(), options_.network.learning_rate),
-              &weights_);
-    adam_mean_ = adam.mean;
-    adam_mean_square_ = adam.mean_square;
+                        1e3 * *std::min_element(errors.begin(), errors.end()), 1e3 * errors_[0]);
+  return distance_bar;
+}
+
+Eigen::VectorXd TopologyFit::PositionDistances() const {
+  const SpringMassSystem& system = twin_.levels.back().system;
+  const std::vector<std::array<int, 2>> pairs = FreePairs(system);
+  Eigen::VectorXd distance(static_cast<Eigen::Index>(pairs.size()));
+  for (Eigen::Index e = 0; e < distance.size(); ++e) {
+    const auto [a, b] = pairs[static_cast<std::size_t>(e)];
+    distance[e] = (system.position.col(a) - system.position.col(b)).norm();
+  }
+  return distance;
+}
+
+void TopologyFit::Learn(const Eigen::VectorXd& weights_bar) {
+  Adam adam(weights_.size());
+  adam.steps = iteration_;
+  adam.mean = adam_mean_;
+  adam.mean_square = adam_mean_square_;
+  adam.Step(weights_bar, Eigen::VectorXd::Constant(weights_.size(), options_.network.learning_rate),
+            &weights_);
+  adam_mean_ = adam.mean;
+  adam_mean_square_ = adam.mean_square;
+}
+
+bool TopologyFit::Step() {
+  if (iteration_ > kIterations) return false;
+  using Features = TrainOptions::Network::Features;
+  const double temperature = iteration_ == kIterations ? 0 : Temperature();
+  // distances in units of their mean, so that the temperature means the same at all levels
+  if (options_.network.features == Features::kPositions) {
+    const Eigen::VectorXd distance = PositionDistances();
+    Draw(distance / distance.mean(), temperature);
+  } else {
+    Tape tape(weights_);
+    const Tape::Node latent = network_.Encode(LevelsOf(twin_), &tape).nodes;
+    const Tape::Node apart = tape.Distance(latent, FreePairs(twin_.levels.back().system));
+    const double unit = tape.value(apart).mean();
+    const Eigen::VectorXd distance_bar = Draw(tape.value(apart).col(0) / unit, temperature);
+    if (temperature > 0 && options_.network.features == Features::kLearned) {
+      Eigen::VectorXd weights_bar = Eigen::VectorXd::Zero(weights_.size());
+      tape.Backward({{apart, distance_bar / unit}}, &weights_bar);
+      Learn(weights_bar);
+    }
   }
   ++iteration_;
   return true;

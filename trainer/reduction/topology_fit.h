@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns an assignment of the last level of a twin: trains the graph network's encoder so that
-// Neural-CLASP (neural_clasp.h) on its latent features chooses clusters that can follow level 0's
-// motion of the fit frames. The temperature falls from 1 to 0.1 in equal factors. The clusters of
-// least error, among all that were drawn and the ones without noise at the end, are candidates.
+// Neural-CLASP (neural_clasp.h) on its latent features draws clusters whose Galerkin projection, as
+// it is, predicts the fit frames under an observer (trainer/observer.h). In each iteration a few
+// draws are ranked by that error, and better ones made more likely than worse ones. The temperature
+// falls from 1 to 0.1 in equal factors. The clusters of least error, among all that were drawn and
+// the ones without noise at the end, are candidates.
 #ifndef PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
 #define PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
 
@@ -13,6 +15,7 @@
 #include "trainer/fitter.h"
 #include "trainer/network/graph_network.h"
 #include "trainer/reduction/neural_clasp.h"
+#include "trainer/rollout.h"
 #include "trainer/state_arrays.h"
 #include "trainer/train_options.h"
 
@@ -38,13 +41,20 @@ class TopologyFit {
 
  private:
   double Temperature() const;
+  double PredictionError(const Assignment& assignment) const;
+  // The temperature is 0 in the last iteration. The gradient of the ranks' loss with respect to
+  // `distance`.
+  Eigen::VectorXd Draw(const Eigen::VectorXd& distance, double temperature);
+  Eigen::VectorXd PositionDistances() const;
+  void Learn(const Eigen::VectorXd& weights_bar);
   void Consider(const Assignment& assignment, double error);
 
   TrainOptions options_;
   Twin twin_;
   const GraphNetwork& network_;
   int nodes_;
-  ProjectionLoss loss_;
+  Eigen::Vector3d up_;
+  std::vector<Episode> episodes_;
 
   // Everything that the next step depends on, besides the above.
   int iteration_ = 0;
