@@ -5,7 +5,8 @@ paper's Tables 1 to 4.
 
 For each recording: level 0 by the full fit and by the two-stage fit, once; from the full fit's level
 0, the coarser levels by each reduction and seed; and the two-stage fit of a random subset of the
-particles (Table 4). Each training leaves NAME.json in the output folder; what is there is not done
+particles (Table 4), which has no particles to lift to: its columns say the same. With --ablation also
+learned reductions whose features do not learn, or are nothing but rest positions. Each training leaves NAME.json in the output folder; what is there is not done
 again, so that a run that was stopped goes on. The page holds the tables and two plots as SVG.
 
   bench/compare_reductions.py REC.npz... -o results/reductions --seeds 3
@@ -23,7 +24,15 @@ import time
 
 import numpy as np
 
-METHODS = ("learned", "random", "gramian", "kmeans")
+METHODS = {
+    "learned": ["--reduction", "learned"],
+    "random": ["--reduction", "random"],
+    "gramian": ["--reduction", "gramian"],
+    "kmeans": ["--reduction", "kmeans"],
+    "learned-random-latent": ["--reduction", "learned", "--features", "untrained"],
+    "position-only": ["--reduction", "learned", "--features", "positions"],
+}
+ABLATIONS = ("learned-random-latent", "position-only")
 RATIOS = (0.6, 0.4, 0.3)
 # PhySPRING, arXiv 2605.07687: mm, (CD, track) of re-simulation and of the future
 PAPER = {
@@ -96,21 +105,32 @@ def write_subset(recording, ratio, seed, path):
     np.savez(path, **arrays)
 
 
+def motionless(judged):
+    """The errors of a body that stays where it starts, in the shape of a level."""
+    body = {part: dict(errors) for part, errors in judged["motionless"].items()}
+    for errors in body.values():
+        for key in ("cd", "track"):
+            errors[f"{key}_lifted"] = errors[key]
+    return body
+
+
 def train_all(arguments):
     """Results by (recording, method, seed): a list of levels, each with errors and speed."""
     results = {}
     for recording in arguments.recordings:
         stem = recording.stem
-        full = train_and_judge(arguments, f"{stem}.full", recording, recording, ["--levels", 1])
+        full = train_and_judge(arguments, f"{stem}.full", recording, recording,
+                               ["--levels", 1, *arguments.train_dense])
         results[stem, "full", 0] = full["levels"]
+        results[stem, "motionless", 0] = [motionless(full)]
         two = arguments.two_stage and train_and_judge(
             arguments, f"{stem}.two-stage", recording, recording,
-            ["--levels", 1, "--method", "two-stage"])
+            ["--levels", 1, "--method", "two-stage", *arguments.train_two_stage])
         for seed in range(1, arguments.seeds + 1):
             for method in arguments.methods:
                 done = train_and_judge(
                     arguments, f"{stem}.{method}.{seed}", recording, recording,
-                    ["--levels", 4, "--reduction", method, "--seed", seed, "--from",
+                    ["--levels", 4, *METHODS[method], "--seed", seed, "--from",
                      arguments.output / f"{stem}.full.twin.npz", *arguments.train])
                 results[stem, method, seed] = done["levels"]
             if not two:
@@ -121,7 +141,8 @@ def train_all(arguments):
                 write_subset(recording, ratio, seed, subset)
                 name = f"{stem}.two-stage{round(100 * ratio)}.{seed}"
                 done = train_and_judge(arguments, name, subset, subset,
-                                       ["--levels", 1, "--method", "two-stage", "--seed", seed])
+                                       ["--levels", 1, "--method", "two-stage", "--seed", seed,
+                                        *arguments.train_two_stage])
                 levels.append(done["levels"][0])
             results[stem, "two-stage", seed] = levels
     return results
@@ -172,11 +193,29 @@ def error_table(results, title, rows):
     return title, head, body
 
 
+def table_of_level_0(results):
+    """Of each recording: the future's track error of both fits of level 0, and of no motion."""
+    names = ("full", "two-stage", "motionless")
+    body = []
+    ratios = []
+    for recording in dict.fromkeys(name for name, _, _ in results):
+        one = {key: levels for key, levels in results.items() if key[0] == recording}
+        errors = [values(one, name, 0, "prediction", "track") for name in names]
+        means = [np.nanmean(rows[0]) if rows else np.nan for rows in errors]
+        ratios.append(means[0] / means[1])
+        body.append([recording, *(f"{mean:.2f}" for mean in means), f"{ratios[-1]:.2f}"])
+    body.append(["mean", "", "", "", f"{np.mean(ratios):.2f}"])
+    return ("Level 0: track error of the future (mm)",
+            ["recording", *names, "full / two-stage"], body)
+
+
 def tables(results, methods):
     coarse = (1, 2, 3)
     first = "learned" if "learned" in methods else methods[0]
+    yield table_of_level_0(results)
     yield error_table(results, "Table 1: all levels (mm)",
-                      [("two-stage", 0)] + [(first, level) for level in range(4)])
+                      [("motionless", 0), ("two-stage", 0)]
+                      + [(first, level) for level in range(4)])
     head = ["level", "nodes", "springs", "speed-up", "paper", "lifted track / level 0", "paper (direct)"]
     body = []
     for level in coarse:
@@ -189,7 +228,8 @@ def tables(results, methods):
                      f"{PAPER['learned', level][3] / PAPER['learned', 0][3]:.2f}"])
     yield "Table 2: error against speed (prediction; each level with its own sub-step)", head, body
     yield error_table(results, "Table 3: ways to reduce (mm)",
-                      [(method, level) for level in coarse for method in methods])
+                      [("motionless", 0), ("full", 0)]
+                      + [(method, level) for level in coarse for method in methods])
     yield error_table(results, "Table 4: a two-stage fit of a random subset (mm)",
                       [(method, level) for level in coarse for method in ("two-stage", first)])
 
@@ -203,7 +243,7 @@ def print_table(title, head, body):
 
 def plot(results, methods, x_name, x_of):
     """SVG of lifted track error (prediction) against x_of(levels, level), a line a method."""
-    colours = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd")
+    colours = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#7f7f7f")
     lines = {}
     for method in methods:
         some = [levels for (_, of, _), levels in results.items() if of == method]
@@ -225,10 +265,10 @@ def plot(results, methods, x_name, x_of):
         svg.append(f'<text x="54" y="{y + 4:.0f}" text-anchor="end">{part * high[1]:.3g}</text>')
     for k, (method, line) in enumerate(lines.items()):
         path = " ".join(f"{x:.1f},{y:.1f}" for x, y in map(place, line))
-        svg.append(f'<polyline points="{path}" fill="none" stroke="{colours[k]}"/>')
-        svg += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colours[k]}"/>'
+        svg.append(f'<polyline points="{path}" fill="none" stroke="{colours[k % 6]}"/>')
+        svg += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colours[k % 6]}"/>'
                 for x, y in map(place, line)]
-        svg.append(f'<text x="475" y="{50 + 18 * k}" fill="{colours[k]}">{method}</text>')
+        svg.append(f'<text x="475" y="{50 + 18 * k}" fill="{colours[k % 6]}">{method}</text>')
     return "\n".join(svg + ["</svg>"])
 
 
@@ -247,6 +287,14 @@ def write_page(path, all_tables, plots):
     path.write_text("\n".join(parts))
 
 
+def methods_of(text):
+    names = text.split(",")
+    unknown = [name for name in names if name not in METHODS]
+    if unknown:
+        raise argparse.ArgumentTypeError(f"no such method: {unknown[0]}")
+    return names
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -254,15 +302,24 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, metavar="DIR")
     parser.add_argument("--physpring", type=pathlib.Path,
                         default=pathlib.Path("build/release/physpring"))
-    parser.add_argument("--methods", default=",".join(METHODS), metavar="NAME[,NAME...]",
-                        type=lambda names: names.split(","))
+    parser.add_argument("--methods", metavar="NAME[,NAME...]", type=methods_of,
+                        default=[name for name in METHODS if name not in ABLATIONS],
+                        help=f"of {', '.join(METHODS)}")
+    parser.add_argument("--ablation", action="store_true",
+                        help=f"with {' and '.join(ABLATIONS)}, too")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--no-two-stage", dest="two_stage", action="store_false",
                         help="leave out the two-stage fits (Table 4)")
     parser.add_argument("--train", default="", metavar="OPTIONS", type=str.split,
                         help="further options of `physpring train` for the coarser levels")
+    parser.add_argument("--train-dense", default="", metavar="OPTIONS", type=str.split,
+                        help="the same for the full fit of level 0")
+    parser.add_argument("--train-two-stage", default="", metavar="OPTIONS", type=str.split,
+                        help="the same for two-stage fits")
     arguments = parser.parse_args()
+    if arguments.ablation:
+        arguments.methods += [name for name in ABLATIONS if name not in arguments.methods]
     arguments.output.mkdir(parents=True, exist_ok=True)
     results = train_all(arguments)
     all_tables = list(tables(results, arguments.methods))

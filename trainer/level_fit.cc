@@ -92,7 +92,7 @@ Parameters LevelFit::SpringParameters() const {
 // What the network corrects: the common factors, and the contact's coefficients as they are
 // updated. The network adds to the same logits.
 SpringMassSystem LevelFit::NetworkBase(const Eigen::VectorXd& contact) const {
-  const SpringMassSystem base = CommonParameters().Apply(common_);
+  SpringMassSystem base = CommonParameters().Apply(common_);
   if (contact.isZero(0)) return base;
   Features of_system(1, 3);
   of_system << 0, contact[0], contact[1];
@@ -101,7 +101,7 @@ SpringMassSystem LevelFit::NetworkBase(const Eigen::VectorXd& contact) const {
 
 // With the best corrections so far.
 SpringMassSystem LevelFit::CorrectedSystem() const {
-  const SpringMassSystem base = NetworkBase(best_contact_);
+  SpringMassSystem base = NetworkBase(best_contact_);
   if (options_.network.epochs == 0) return base;
   return LevelNetwork(network_, twin_, base, best_weights_).corrected();
 }

@@ -274,6 +274,8 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--levels", "5"}, "--ratios: needs one ratio for each level but level 0");
   refused({"--levels", "2", "--ratios", "1.5"}, "--ratios: takes a number from 0 to 1");
   refused({"--reduction", "best"}, "--reduction: takes learned or random or gramian or kmeans");
+  refused({"--reduction", "kmeans", "--features", "positions"},
+          "--features: is of --reduction learned");
   refused({"--method", "three-stage"}, "--method: takes full or two-stage, not 'three-stage'");
   for (const char* epochs : {"-1", "0", "2.5", "ten", "3x", ""}) {
     refused({std::string("--epochs=") + epochs}, "--epochs");
