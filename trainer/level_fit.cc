@@ -151,13 +151,15 @@ void LevelFit::BeginSprings() {
   springs_ = Eigen::VectorXd::Zero(SpringParameters().size());
 }
 
-// The mean track error of the held-back frames, m; infinite where the motion diverges.
+// The mean track error of the held-back frames, m, under the observer's last gain above 0: free
+// motions that slip at one moment or another would decide by chance. Infinite where it diverges.
 double LevelFit::HeldBackError(const SpringMassSystem& system) const {
   std::vector<Episode> episodes;
   for (const HeldBack::Judged& judged : held_back_.judged) {
     episodes.push_back({judged.whole, judged.whole->train_frames});
   }
-  const LiftedMotion motion(twin_, level_, episodes, MotionOptions(options_.threads));
+  const LiftedMotion motion(twin_, level_, episodes,
+                            MotionOptions(options_.threads, kObserverGains[kLastGain - 1]));
   const auto moved = motion.Run(system, motion.Substeps(system));
   if (!moved) return std::numeric_limits<double>::infinity();
   double sum = 0;
