@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/diagnosis_checkpoint.h"
 #include "cli/diagnosis_report.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
@@ -29,10 +32,12 @@ struct Arguments {
   std::string twin, output, json;
   std::vector<std::string> recordings, held_out;
   DiagnosisOptions options;
+  bool resume = false, force = false;
+  double checkpoint_interval = 10;  // s
 };
 
 struct Outputs {
-  std::string report, page, twin;
+  std::string report, page, twin, checkpoint;
 };
 
 // Before the work: makes the folder.
@@ -45,12 +50,53 @@ Outputs MakeOutputs(const Arguments& arguments, const std::vector<RecordingEntry
     throw Error(fmt::format("{}: cannot be made: {}", arguments.output, failure.message()));
   }
   const Outputs outputs{(folder / "report.json").string(), (folder / "report.html").string(),
-                        (folder / std::filesystem::path(arguments.twin).filename()).string()};
+                        (folder / std::filesystem::path(arguments.twin).filename()).string(),
+                        (folder / "checkpoint.npz").string()};
   std::vector<std::string> inputs{arguments.twin};
   for (const RecordingEntry& entry : fit) inputs.push_back(entry.path);
   for (const RecordingEntry& entry : held_out) inputs.push_back(entry.path);
-  ExpectOutputs({outputs.report, outputs.page, outputs.twin, arguments.json}, inputs);
+  ExpectOutputs({outputs.report, outputs.page, outputs.twin, outputs.checkpoint, arguments.json},
+                inputs);
   return outputs;
+}
+
+// With progress and checkpoints. A signal leaves a checkpoint and throws Interrupted.
+Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
+                       const std::vector<Recording>& recordings,
+                       const std::vector<Recording>& held_out, const Arguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  const InterruptWatch watch;
+  Journal journal;
+  if (arguments.resume) checkpoint.Resume(&journal);
+  std::optional<Progress> progress;  // from the first piece of work that is not in the checkpoint
+  double done = 0;
+  journal.progress = [&](double share, const std::string& status) {
+    if (watch.signal() != 0) throw Interrupted{watch.signal()};
+    if (!progress) progress.emplace(share);
+    done = std::max(done, share);
+    progress->Show(share, status);
+  };
+  Clock::time_point written = Clock::now();
+  journal.kept = [&] {
+    const std::chrono::duration<double> since = Clock::now() - written;
+    if (since.count() < arguments.checkpoint_interval) return;
+    checkpoint.Write(journal);
+    written = Clock::now();
+  };
+  DiagnosisOptions options = arguments.options;
+  options.journal = &journal;
+  try {
+    Diagnosis diagnosis = Diagnose(twin, recordings, held_out, options);
+    checkpoint.Write(journal);
+    return diagnosis;
+  } catch (const Interrupted&) {
+    progress.reset();
+    checkpoint.Write(journal);
+    fmt::print(stderr,
+               "physpring: stopped at {:.0f} %; the same command with --resume goes on from {}\n",
+               std::min(99.0, 100 * done), checkpoint.path());
+    throw;
+  }
 }
 
 void Run(const Arguments& arguments) {
@@ -61,33 +107,29 @@ void Run(const Arguments& arguments) {
   std::vector<Recording> judged;
   for (const RecordingEntry& entry : held_out) judged.push_back(ReadRecording(entry.path));
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
-  const InterruptWatch watch;
-  DiagnosisOptions options = arguments.options;
-  Diagnosis diagnosis;
-  {
-    Progress progress(0);
-    options.progress = [&](double share, const std::string& status) {
-      if (watch.signal() != 0) throw Interrupted{watch.signal()};
-      progress.Show(share, status);
-    };
-    diagnosis = Diagnose(twin, data.recordings, judged, options);
-  }
+  const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, data.recordings, judged,
+                                       arguments.options);
+  checkpoint.ExpectReplaceable(outputs.report, arguments.resume || arguments.force);
+  const Diagnosis diagnosis = DiagnoseWith(checkpoint, twin, data.recordings, judged, arguments);
   const std::string json = FormatDiagnosisJson(diagnosis);
   WriteFileAtomically(outputs.report, json);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, json);
   const std::string name = std::filesystem::path(arguments.twin).filename().string();
   WriteFileAtomically(outputs.page, FormatDiagnosisPage(diagnosis, "Diagnosis of " + name));
   WriteTwin(diagnosis.twin, outputs.twin);
+  checkpoint.Finish();
   fmt::print("{}", FormatDiagnosisText(diagnosis));
 }
 
 }  // namespace
 
 void AddDiagnoseCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("diagnose",
-                                         "Finds the physical effect that a twin lacks on measured "
-                                         "recordings, adds it, and reports the "
-                                         "error before and after on frames not fitted.");
+  CLI::App* command =
+      app.add_subcommand("diagnose",
+                         "Finds the physical effect that a twin lacks on measured "
+                         "recordings, adds it, and reports the "
+                         "error before and after on frames not fitted. Ctrl-C leaves a "
+                         "checkpoint.");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command
@@ -107,6 +149,15 @@ void AddDiagnoseCommand(CLI::App& app) {
       ->type_name("REC.npz|DIR");
   command->add_option("--json", arguments->json, "write report.json here, too")
       ->type_name("FILE.json");
+  CLI::Option* const resume = command->add_flag(
+      "--resume", arguments->resume, "go on with an unfinished diagnosis in DIR, if there is one");
+  command->add_flag("--force", arguments->force, "overwrite a diagnosis")->excludes(resume);
+  command
+      ->add_option("--checkpoint", arguments->checkpoint_interval,
+                   "seconds between checkpoints, at least")
+      ->check(NumberBetween(0, 1e6))
+      ->type_name("SECONDS")
+      ->capture_default_str();
   AddSeed(command, &arguments->options.seed, "of the bootstrap");
   arguments->options.threads = AllCores();
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// `physpring diagnose` as a user sees it, as far as it goes before the work.
+// `physpring diagnose` as a user sees it: what it refuses before the work, and that it can be
+// stopped anywhere.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
 
 #include "tests/support/program.h"
+#include "tests/support/running_program.h"
 #include "tests/support/small_twin.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/atomic_file.h"
+#include "twin/npz.h"
 
 namespace physpring {
 namespace {
@@ -49,6 +58,119 @@ TEST_F(Diagnose, FailsBeforeTheWorkWhereItCannotWrite) {
   EXPECT_TRUE(FailsWith(Run(output_, folder_.File("none/report.json")),
                         "none/report.json: cannot be written: its folder is missing"));
   EXPECT_TRUE(FailsWith(Run(output_, output_ + "/report.json"), "two outputs have this name"));
+}
+
+// A twin that was trained on the motion of a body that weighs more on one side.
+class DiagnoseAnew : public Diagnose {
+ protected:
+  DiagnoseAnew() {
+    Twin heavy = SmallTwin(1);
+    heavy.levels[0].system.mass.head(8) *= 3;
+    WriteRecording(RecordingOfMotion(heavy, 10), swing_);
+    WriteRecording(RecordingOfMotion(heavy, 12), held_);
+    Twin twin = SmallTwin(1);
+    twin.trained_on = {{"swing", HashFile(swing_), 10}};
+    WriteTwin(twin, twin_);
+  }
+
+  std::vector<std::string> Words(const std::string& output,
+                                 const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"diagnose", twin_, swing_, "--heldout", held_, "-o", output};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  static void ExpectSameFiles(const std::string& p, const std::string& q) {
+    for (const char* name : {"report.json", "report.html", "small.twin.npz"}) {
+      EXPECT_TRUE(ReadFile(p + "/" + name) == ReadFile(q + "/" + name)) << name;
+    }
+  }
+
+  std::string whole_ = folder_.File("whole"), printed_ = folder_.File("printed");
+};
+
+// Killed or interrupted at random moments, with many checkpoints, and resumed with one or two
+// threads.
+TEST_F(DiagnoseAnew, WritesTheSameBytesHoweverOftenItIsStopped) {
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramResult uninterrupted = RunProgram(Words(whole_, {"--threads", "1"}));
+  ASSERT_EQ(uninterrupted.status, 0) << uninterrupted.errors;
+  const std::chrono::duration<double> usual = std::chrono::steady_clock::now() - start;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0.05, 0.4);
+  for (int i = 0; i < 6; ++i) {
+    RunningProgram program(
+        Words(output_, {"--checkpoint", "0", "--resume", "--threads", i % 2 == 0 ? "1" : "2"}),
+        printed_);
+    std::this_thread::sleep_for(part(random) * usual);
+    program.Signal(i % 3 == 2 ? SIGINT : SIGKILL);
+    program.Wait();
+    const std::string checkpoint = output_ + "/checkpoint.npz";
+    if (std::filesystem::exists(checkpoint)) ReadNpz(checkpoint);  // throws if it is not whole
+  }
+  const ProgramResult result = RunProgram(Words(output_, {"--resume"}));
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(result.output, uninterrupted.output);
+  ExpectSameFiles(whole_, output_);
+  // the test is of all kinds of work: a search, and a refit of springs
+  const auto report = nlohmann::json::parse(ReadFile(whole_ + "/report.json"));
+  EXPECT_FALSE(report["candidates"].empty());
+}
+
+TEST_F(DiagnoseAnew, GoesOnWithoutTheWorkThatIsDone) {
+  ASSERT_EQ(RunProgram(Words(whole_, {"--checkpoint", "0"})).status, 0);
+  const std::string checkpoint = whole_ + "/checkpoint.npz", bytes = ReadFile(checkpoint);
+  const auto results = ReadNpz(checkpoint).at("hashes").size();
+  EXPECT_EQ(RunProgram(Words(whole_, {"--resume"})).status, 0);
+  EXPECT_TRUE(ReadFile(checkpoint) == bytes);
+  EXPECT_GT(results, 16u * 50);  // steps and scores
+}
+
+TEST_F(DiagnoseAnew, LeavesACheckpointWhenInterrupted) {
+  RunningProgram program(Words(output_, {"--checkpoint", "0", "--threads", "1"}), printed_);
+  while (!std::filesystem::exists(output_ + "/checkpoint.npz")) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  program.Signal(SIGINT);
+  EXPECT_EQ(program.Wait(), 130) << ReadFile(printed_);
+  EXPECT_NE(ReadFile(printed_).find("the same command with --resume goes on from " + output_ +
+                                    "/checkpoint.npz"),
+            std::string::npos)
+      << ReadFile(printed_);
+  EXPECT_FALSE(std::filesystem::exists(output_ + "/report.json"));
+  EXPECT_TRUE(FailsWith(RunProgram(Words(output_, {})),
+                        output_ + ": holds an unfinished diagnosis; --resume goes on with it"));
+  EXPECT_TRUE(FailsWith(RunProgram(Words(output_, {"--resume", "--seed", "5"})),
+                        "checkpoint.npz: is of a diagnosis with seed 0, not 5; resume with"));
+}
+
+TEST_F(Diagnose, OverwritesAFinishedDiagnosisOnlyByForce) {
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"diagnose", twin_, swing_, "--heldout", held_, "-o", output_};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunProgram(words);
+  };
+  ASSERT_EQ(run({}).status, 0);
+  const std::string report = output_ + "/report.json", bytes = ReadFile(report);
+  std::ofstream(report) << "mine";
+  EXPECT_TRUE(FailsWith(run({}), output_ + ": holds a finished diagnosis; --force makes it anew"));
+  EXPECT_EQ(ReadFile(report), "mine");
+  EXPECT_EQ(run({"--force"}).status, 0);
+  EXPECT_TRUE(ReadFile(report) == bytes);
+  std::filesystem::remove(output_ + "/checkpoint.npz");  // from an earlier version
+  EXPECT_TRUE(FailsWith(run({}), output_ + ": holds a finished diagnosis"));
+  EXPECT_EQ(run({"--force", "--resume"}).status, 2);
+}
+
+TEST_F(Diagnose, RefusesACheckpointThatIsNone) {
+  std::filesystem::create_directories(output_);
+  const std::string checkpoint = output_ + "/checkpoint.npz";
+  std::ofstream(checkpoint) << "nothing";
+  const auto resume = [&] {
+    return RunProgram({"diagnose", twin_, swing_, "-o", output_, "--resume"});
+  };
+  EXPECT_TRUE(FailsWith(resume(), checkpoint + ": "));
+  WriteNpz({{"x", NpzArray::Text("y")}}, checkpoint);
+  EXPECT_TRUE(FailsWith(resume(), checkpoint + ": is no checkpoint of a diagnosis"));
 }
 
 }  // namespace

@@ -31,6 +31,11 @@ constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.
 // single springs could do without it.
 constexpr double kSimplyExplained = 0.8;
 
+// Shares of the work, as the journal tells it: refits without an effect, then rounds, and of a
+// round the search.
+constexpr WorkShare kCommonShare{0, 0.2}, kSpringShare{0.2, 0.3};
+constexpr double kSearchPart = 0.8;
+
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
     return !trained.hash.empty() && trained.hash == recording.hash;
@@ -109,9 +114,8 @@ class Loop {
 
   // The refit of common factors without a new effect; false if the model diverges.
   bool FitCommon(const std::vector<EffectValues>& known) {
-    Report(0, "refitting the model without any new effect");
-    bodies_ = FitBodies(fitting_, known);
-    const auto base = FitBest(*fitting_, bodies_);
+    bodies_ = FitBodies(fitting_, known, kCommonShare.Part(0, 0.7));
+    const auto base = FitBest(*fitting_, bodies_, kCommonShare.Part(0.7, 1));
     if (!base) return false;
     common_ = accepted_ = *base;
     return true;
@@ -125,7 +129,8 @@ class Loop {
   // Single springs, too, unless those of the twin were better.
   void FitSprings() {
     if (!trained_on_ || accepted_.as_trained) return;
-    Report(0.1, "refitting springs without any new effect");
+    fitting_->journal().Stage(kSpringShare, kSpringSteps,
+                              "refitting springs without any new effect");
     fitting_->RefitSprings(kSpringSteps, &accepted_);
   }
 
@@ -134,17 +139,16 @@ class Loop {
     const bool explained = round == 0 ? common_.track.held < kExplained * noise_floor_
                                       : accepted_.track.held < kExplainedByEffects * noise_floor_;
     if (explained) return false;
-    const double first = 0.2 + 0.8 * round / options_.most_effects;
-    const double share = 0.8 / options_.most_effects;
-    const EffectSearchResult search = SearchEffects(
-        *fitting_, bodies_, effects_,
-        [&](double part, const std::string& status) { Report(first + share * part, status); });
+    const WorkShare stage = ShareOf(round);
+    const EffectSearchResult search =
+        SearchEffects(*fitting_, bodies_, effects_, stage.Part(0, kSearchPart));
     if (search.fits.empty()) return false;
     const std::size_t best = ChooseSimplest(search.fits, block_, options_.seed);
     if (round == 0) candidates_ = RankEffects(search, common_, best, block_, options_.seed);
     const EffectFit chosen = search.fits[best];
     EffectFit with_springs = chosen;
-    Report(first + 0.9 * share, "refitting springs with " + chosen.start.back().name);
+    fitting_->journal().Stage(stage.Part(kSearchPart, 1), kSpringSteps,
+                              "refitting springs with " + chosen.start.back().name);
     if (trained_on_) fitting_->RefitSprings(kSpringSteps, &with_springs);
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
@@ -161,8 +165,10 @@ class Loop {
   }
 
  private:
-  void Report(double share, const std::string& status) const {
-    if (options_.progress) options_.progress(share, status);
+  // Half of what is left after the round before, since few diagnoses need all rounds.
+  WorkShare ShareOf(int round) const {
+    const double left = (1 - kSpringShare.last) * std::pow(0.5, round);
+    return {1 - left, round + 1 == options_.most_effects ? 1 : 1 - left / 2};
   }
 
   // Whether the effect takes away a part `least_gain` of the error above the noise. `tried`: refits
@@ -253,7 +259,8 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   for (const Recording& recording : held_out) ExpectSameObject(twin, recording);
   const std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
   result.noise_floor = NoiseFloor(splits);
-  EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads);
+  EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads,
+                        options.journal);
   Loop loop(&fitting, result.noise_floor, result.trained_on, options);
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
   if (!loop.FitCommon(known)) {
@@ -288,7 +295,6 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   const bool velocity = accepted.as_trained ? twin.controller_velocity
                                             : fitting.bodies()[accepted.body].controller_velocity;
   result.twin = TwinWith(twin, accepted, velocity, result.effects, recordings);
-  if (options.progress) options.progress(1, "done");
   return result;
 }
 

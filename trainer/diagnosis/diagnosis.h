@@ -15,7 +15,6 @@
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +22,7 @@
 #include "trainer/diagnosis/block_bootstrap.h"
 #include "trainer/diagnosis/effect_certainty.h"
 #include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/journal.h"
 #include "trainer/diagnosis/unexplained.h"
 #include "twin/recording.h"
 #include "twin/twin.h"
@@ -37,7 +37,8 @@ struct DiagnosisOptions {
   // What an effect must explain at least: a part of the error above the noise floor, and a part of
   // the noise floor.
   double least_gain = 0.4, least_noise = 0.2;
-  std::function<void(double share, const std::string& status)> progress;  // may throw to stop
+  // What is worked out already, and where more of it is kept; its `progress` is called in between.
+  Journal* journal = nullptr;
 };
 
 struct EffectCandidate {

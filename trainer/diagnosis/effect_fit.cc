@@ -41,6 +41,23 @@ void ForEach(int threads, std::vector<EffectFit>* fits, Work work) {
   *fits = std::move(kept);
 }
 
+// The state of either method as one vector, and back.
+template <class State>
+Eigen::VectorXd Pack(const State& state) {
+  Eigen::VectorXd packed(state.x.size() + 3);
+  packed << state.x, state.damping, state.mean_square, state.converged ? 1 : 0;
+  return packed;
+}
+
+template <class State>
+void Unpack(const Eigen::VectorXd& packed, State* state) {
+  const Eigen::Index size = packed.size() - 3;
+  state->x = packed.head(size);
+  state->damping = packed[size];
+  state->mean_square = packed[size + 1];
+  state->converged = packed[size + 2] != 0;
+}
+
 // The trainer's, and for the effects the one of Levenberg-Marquardt.
 GaussNewtonOptions Prior(const EffectModel& model) {
   GaussNewtonOptions options = SpringPrior(model.own());
@@ -64,11 +81,12 @@ void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* f
 }
 
 EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
-                             std::vector<SplitRecording> recordings, int threads)
+                             std::vector<SplitRecording> recordings, int threads, Journal* journal)
     : bodies_(std::move(bodies)),
       recordings_(std::move(recordings)),
       followed_(recordings_),
-      threads_(threads) {
+      threads_(threads),
+      journal_(journal) {
   for (const SplitRecording& split : recordings_) seen_.push_back(OnlyFitFrames(split));
   for (std::size_t i = 0; i < seen_.size(); ++i) followed_[i].recording = &seen_[i];
 }
@@ -129,9 +147,15 @@ bool EffectFitting::DescendOne(double gain, int steps, EffectFit* fit) const {
   state.x = fit->x;
   state.damping = fit->damping;
   for (int step = 0; step < steps && !state.converged; ++step) {
-    if (!problem.FixSubsteps(state.x)) return false;
-    state = LevenbergMarquardtStep([&](const Eigen::VectorXd& at) { return problem.Residuals(at); },
-                                   state, options);
+    PieceKey key("Levenberg-Marquardt");
+    key.Add(static_cast<double>(fit->body)).Add(fit->start).Add(gain);
+    const Eigen::VectorXd after = journal().Get(key.Add(state.x).Add(state.damping), [&] {
+      if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
+      return Pack(LevenbergMarquardtStep(
+          [&](const Eigen::VectorXd& at) { return problem.Residuals(at); }, state, options));
+    });
+    if (after.size() == 0) return false;
+    Unpack(after, &state);
   }
   if (!(state.mean_square > 0)) return false;
   fit->x = state.x;
@@ -178,7 +202,12 @@ void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
   int slow = 0;
   for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
     const double before = state.mean_square;
-    state = GaussNewtonStep(&problem, state, prior);
+    PieceKey key("Gauss-Newton");
+    key.Add(static_cast<double>(fit->body)).Add(fit->start).Add(fit->x);
+    const Eigen::VectorXd after = journal().Get(key.Add(state.x).Add(state.damping), [&] {
+      return Pack(GaussNewtonStep(&problem, state, prior));
+    });
+    Unpack(after, &state);
     slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
   }
   EffectFit refitted = *fit;

@@ -5,10 +5,12 @@
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_FIT_H_
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "trainer/diagnosis/diagnosis_body.h"
 #include "trainer/diagnosis/effect_problem.h"
+#include "trainer/diagnosis/journal.h"
 
 namespace physpring {
 
@@ -38,14 +40,16 @@ void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* f
 
 class EffectFitting {
  public:
+  // `journal` (it must outlive this) keeps what is worked out; without one nothing is kept.
   EffectFitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings,
-                int threads);
+                int threads, Journal* journal = nullptr);
   EffectFitting(const EffectFitting&) = delete;
   EffectFitting& operator=(const EffectFitting&) = delete;
 
   const std::vector<DiagnosisBody>& bodies() const { return bodies_; }
   const std::vector<SplitRecording>& recordings() const { return recordings_; }
   int threads() const { return threads_; }
+  Journal& journal() const { return journal_ ? *journal_ : *own_journal_; }
   double difference() const;  // step of forward differences; longer where contacts jump
 
   // A fit of that body that begins as soft or stiff as predicts best under the highest gain. Not
@@ -78,6 +82,8 @@ class EffectFitting {
   std::vector<Recording> seen_;           // with the fit frames only ...
   std::vector<SplitRecording> followed_;  // ... and their splits
   int threads_;
+  Journal* journal_;
+  std::unique_ptr<Journal> own_journal_ = std::make_unique<Journal>();
 };
 
 }  // namespace physpring

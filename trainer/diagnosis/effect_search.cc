@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kTracedEffects = 6;  // that are refitted at most ...
 constexpr double kLeastScore = 0.05;       // ... if the trace gives them such a part of the best
 constexpr int kDraws = 1000;
+constexpr double kTraceShare = 0.3;  // of the work of a search
+constexpr char kWithoutEffect[] = " without any new effect";
 
 // Steps of all fits, and how many of them go on after that: in all, and with one effect.
 struct Cut {
@@ -49,14 +51,20 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* f
 }
 
 // Successive halving; the best fit by misfit is the first one after it.
-void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const SearchProgress& progress,
-           std::vector<EffectFit>* fits) {
-  double share = 0.3;
+void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const WorkShare& stage,
+           const std::string& of, std::vector<EffectFit>* fits) {
+  double done = 0, all = 0;  // steps, if each cut keeps as many as it may
+  std::size_t count = fits->size();
   for (const Cut& cut : cuts) {
-    if (progress) {
-      progress(share, fmt::format("refitting {} models, gain {}", fits->size(), cut.gain));
-    }
-    share += 0.2;
+    all += static_cast<double>(count) * cut.steps;
+    count = std::min(count, cut.kept);
+  }
+  for (const Cut& cut : cuts) {
+    const int steps = static_cast<int>(fits->size()) * cut.steps;
+    fitting.journal().Stage(
+        stage.Part(done / all, std::min(1.0, (done + steps) / all)), steps,
+        fmt::format("refitting {} models{}, gain {}", fits->size(), of, cut.gain));
+    done += steps;
     for (EffectFit& fit : *fits) {
       fit.damping = 1e-2;
       fit.converged = false;
@@ -75,18 +83,20 @@ void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
 
 }  // namespace
 
-std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known) {
+std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known,
+                                 const WorkShare& stage) {
   std::vector<EffectFit> fits;
   for (std::size_t body = 0; body < fitting->bodies().size(); ++body) {
     EffectFit fit = fitting->Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
-  Halve(*fitting, kBodyCuts, {}, &fits);
+  if (!fits.empty()) Halve(*fitting, kBodyCuts, stage, kWithoutEffect, &fits);
   return fits;
 }
 
-std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies) {
-  Halve(fitting, kBestCuts, {}, &bodies);
+std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies,
+                                 const WorkShare& stage) {
+  if (!bodies.empty()) Halve(fitting, kBestCuts, stage, kWithoutEffect, &bodies);
   JudgeAndSort(fitting, &bodies);
   if (bodies.empty()) return {};
   return bodies[0];
@@ -94,10 +104,9 @@ std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<Effec
 
 EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                  const std::vector<const Effect*>& effects,
-                                 const SearchProgress& progress) {
+                                 const WorkShare& stage) {
   EffectSearchResult result;
-  if (progress) progress(0, "tracing the effects");
-  result.traces = TraceEffects(fitting, bodies.front(), effects);
+  result.traces = TraceEffects(fitting, bodies.front(), effects, stage.Part(0, kTraceShare));
   std::vector<std::size_t> order;
   for (std::size_t n = 0; n < effects.size(); ++n) {
     if (result.traces[n].start.size() > 0) order.push_back(n);
@@ -117,7 +126,7 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector
       result.fits.push_back(std::move(fit));
     }
   }
-  Halve(fitting, kCuts, progress, &result.fits);
+  if (!result.fits.empty()) Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &result.fits);
   JudgeAndSort(fitting, &result.fits);
   // of each effect the body that predicts best
   std::map<std::string, int> seen;

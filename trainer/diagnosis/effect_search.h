@@ -8,7 +8,6 @@
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,15 +16,16 @@
 
 namespace physpring {
 
-// Called between steps with the share that is done; may throw to stop.
-using SearchProgress = std::function<void(double share, const std::string& status)>;
+// `stage`, here and below: the share of the work, for the journal.
 
 // The bodies that fit best, as they are, fitted down to the gain of the trace; the best
 // first. Those that diverge are left out.
-std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known);
+std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known,
+                                 const WorkShare& stage);
 
 // The best of them on held-out frames after a fit without an observer; nothing if all diverge.
-std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies);
+std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies,
+                                 const WorkShare& stage);
 
 struct EffectSearchResult {
   std::vector<EffectTrace> traces;  // of each effect, on the best body
@@ -34,8 +34,7 @@ struct EffectSearchResult {
 
 // `bodies`: fits without the effect, the best first; at least one.
 EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
-                                 const std::vector<const Effect*>& effects,
-                                 const SearchProgress& progress);
+                                 const std::vector<const Effect*>& effects, const WorkShare& stage);
 
 // Which of `fits` to take: of those whose held-out error is within one standard error (of the
 // paired difference) of the least, the one with the fewest parameters. `block`: frames that are

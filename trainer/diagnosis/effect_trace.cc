@@ -123,7 +123,8 @@ class Tracer {
 }  // namespace
 
 std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const EffectFit& fit,
-                                      const std::vector<const Effect*>& effects) {
+                                      const std::vector<const Effect*>& effects,
+                                      const WorkShare& stage) {
   std::vector<EffectTrace> traces;
   for (const Effect* effect : effects) traces.push_back({effect, 0, {}});
   Tracer tracer(fitting, fit);
@@ -133,13 +134,19 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
   for (std::size_t i = 0; i < effects.size(); ++i) {
     for (Eigen::VectorXd& start : effects[i]->Starts(system)) jobs.push_back({i, std::move(start)});
   }
-  const auto for_each_job = [&](auto score) {
+  const auto for_each_job = [&](const char* kind, auto score) {
     ParallelFor(static_cast<int>(jobs.size()), fitting.threads(), [&](int n) {
       Job& job = jobs[static_cast<std::size_t>(n)];
-      job.score = score(*effects[job.effect], job.start);
+      const Effect& effect = *effects[job.effect];
+      PieceKey key(kind);
+      key.Add(static_cast<double>(fit.body)).Add(fit.start).Add(fit.x);
+      job.score = fitting.journal().Get(key.Add(effect.name()).Add(job.start), [&] {
+        return Eigen::VectorXd::Constant(1, score(effect, job.start));
+      })[0];
     });
   };
-  for_each_job([&](const Effect& effect, const Eigen::VectorXd& start) {
+  fitting.journal().Stage(stage.Part(0, 0.4), static_cast<int>(jobs.size()), "tracing the effects");
+  for_each_job("response", [&](const Effect& effect, const Eigen::VectorXd& start) {
     return tracer.Response(effect, start);
   });
   std::stable_sort(jobs.begin(), jobs.end(), [](const Job& p, const Job& q) {
@@ -148,7 +155,8 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
   std::vector<std::size_t> kept(effects.size(), 0);
   std::erase_if(jobs,
                 [&](const Job& job) { return job.score < 0 || kept[job.effect]++ >= kStarts; });
-  for_each_job([&](const Effect& effect, const Eigen::VectorXd& start) {
+  fitting.journal().Stage(stage.Part(0.4, 1), static_cast<int>(jobs.size()), "tracing the effects");
+  for_each_job("score", [&](const Effect& effect, const Eigen::VectorXd& start) {
     return tracer.Score(effect, start);
   });
   for (const Job& job : jobs) {

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/diagnosis_checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "twin/error.h"
+#include "twin/npz.h"
+
+namespace physpring {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr char kOf[] = "of", kFinished[] = "finished";
+
+std::vector<std::string> HashesOf(const std::vector<Recording>& recordings) {
+  std::vector<std::string> hashes;
+  for (const Recording& recording : recordings) hashes.push_back(recording.hash);
+  return hashes;
+}
+
+// Throws Error unless the file is a checkpoint.
+Npz ReadCheckpoint(const std::string& path) {
+  Npz arrays = ReadNpz(path);
+  for (const char* name : {kOf, kFinished}) {
+    if (!arrays.contains(name)) {
+      throw Error(
+          fmt::format("{}: is no checkpoint of a diagnosis: array {} is missing", path, name));
+    }
+  }
+  return arrays;
+}
+
+bool Exists(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+}  // namespace
+
+DiagnosisCheckpoint::DiagnosisCheckpoint(const std::string& path, const std::string& twin,
+                                         const std::vector<Recording>& recordings,
+                                         const std::vector<Recording>& held_out,
+                                         const DiagnosisOptions& options)
+    : path_(path),
+      of_json_(Json{{"version", PHYSPRING_VERSION},
+                    {"twin", HashFile(twin)},
+                    {"recordings", HashesOf(recordings)},
+                    {"held-out recordings", HashesOf(held_out)},
+                    {"seed", options.seed}}
+                   .dump()) {}
+
+void DiagnosisCheckpoint::ExpectReplaceable(const std::string& report, bool allowed) const {
+  const bool begun = Exists(path_);
+  if (allowed || (!begun && !Exists(report))) return;
+  const bool finished =
+      !begun || ReadCheckpoint(path_).at(kFinished).ToInts() == std::vector<int>{1};
+  throw Error(fmt::format("{}: {}", fs::path(path_).parent_path().string(),
+                          finished ? "holds a finished diagnosis; --force makes it anew"
+                                   : "holds an unfinished diagnosis; --resume goes on with it, "
+                                     "--force makes it anew"));
+}
+
+void DiagnosisCheckpoint::Resume(Journal* journal) const {
+  if (!Exists(path_)) return;
+  const Npz arrays = ReadCheckpoint(path_);
+  const Json in_file = Json::parse(arrays.at(kOf).ToText(), nullptr, false);
+  const Json now = Json::parse(of_json_);
+  for (const auto& [key, value] : now.items()) {
+    const Json before = in_file.is_object() ? in_file.value(key, Json()) : Json();
+    if (before == value) continue;
+    throw Error(
+        fmt::format("{}: is of a diagnosis with {} {}, not {}; resume with what it began "
+                    "with",
+                    path_, key, before.dump(), value.dump()));
+  }
+  try {
+    journal->Load(arrays);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path_, error.what()));
+  }
+}
+
+void DiagnosisCheckpoint::Write(const Journal& journal) const {
+  Npz arrays = journal.Save();
+  const int flag = 0;
+  arrays[kFinished] = NpzArray::Ints({}, &flag);
+  arrays[kOf] = NpzArray::Text(of_json_);
+  WriteNpz(arrays, path_);
+}
+
+void DiagnosisCheckpoint::Finish() const {
+  Npz arrays = ReadCheckpoint(path_);
+  const int flag = 1;
+  arrays[kFinished] = NpzArray::Ints({}, &flag);
+  WriteNpz(arrays, path_);
+}
+
+}  // namespace physpring
