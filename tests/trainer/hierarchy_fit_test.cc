@@ -50,6 +50,8 @@ void ExpectSameSystem(const SpringMassSystem& a, const SpringMassSystem& b) {
   EXPECT_EQ(a.rest_length, b.rest_length);
   EXPECT_EQ(a.dashpot, b.dashpot);
   EXPECT_EQ(a.drag, b.drag);
+  EXPECT_EQ(a.contact.restitution, b.contact.restitution);
+  EXPECT_EQ(a.contact.friction, b.contact.friction);
 }
 
 void ExpectSameTwin(const Twin& a, const Twin& b) {
@@ -114,6 +116,29 @@ TEST(HierarchyFit, ResumedAnywhereGivesTheSameBits) {
     EXPECT_EQ(second.Progress(), first.Progress());
     ExpectSameTwin(RunToTheEnd(&second), expected);
   }
+}
+
+// On a ground, where restitution and friction are updated, too.
+TEST(HierarchyFit, UpdatesContactAndResumesThere) {
+  Case c;
+  Recording& recording = c.data.recordings[0];
+  recording.ground = Eigen::Vector4d(0, 0, 1, recording.start.row(2).minCoeff());
+  c.options.levels = 2;
+  c.options.reduction = Reduction::kKMeans;
+  c.options.network.contact_updates = 3;
+  c.options.network.epochs = 4;
+  HierarchyFit fit = c.Fit();
+  bool more = true, moved = false;
+  for (int steps = 0; more; ++steps) {
+    more = fit.Step();
+    if (fit.Part() != "network") continue;
+    const StateArrays saved = fit.Save();
+    moved = moved || !LoadVector(saved, "level/contact", 2).isZero(0);
+    HierarchyFit second = c.Fit();
+    second.Load(saved);
+    EXPECT_EQ(LoadVector(second.Save(), "level/contact", 2), LoadVector(saved, "level/contact", 2));
+  }
+  EXPECT_TRUE(moved);
 }
 
 TEST(HierarchyFit, DoesNotDependOnTheNumberOfThreads) {
