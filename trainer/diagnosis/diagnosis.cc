@@ -63,7 +63,7 @@ std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMa
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {
     if (effect->name() == "ground_contact" && !recording.ground) continue;
-    if (solid && effect->name().find("bend") != std::string::npos) continue;
+    if (solid && effect->bends()) continue;
     effects.push_back(effect);
   }
   return effects;

@@ -134,7 +134,9 @@ EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velo
                           ? kMostCommonRate
                           : kMostRate;
   options.controller_velocity = controller_velocity;
-  options.difference = DirectionDifference(*recordings_[0].recording, false);
+  // an observer is for finding the way, which needs fewer digits
+  options.single_precision = gain > 0;
+  options.difference = DirectionDifference(*recordings_[0].recording, options.single_precision);
   options.observer_gain = gain;
   return EffectProblem(std::move(model), gain > 0 ? followed_ : recordings_, options);
 }

@@ -68,6 +68,7 @@ std::optional<Eigen::VectorXd> EffectProblem::RollOutAll(
     RolloutOptions rollout_options;
     rollout_options.controller_velocity = options_.controller_velocity;
     rollout_options.substeps = substeps_[i];
+    rollout_options.single_precision = options_.single_precision;
     rollout_options.growth_limit = std::numeric_limits<double>::infinity();
     rollout_options.observer_gain = options_.observer_gain;
     auto rollout = RollOut(system, {split.recording, frames}, rollout_options);

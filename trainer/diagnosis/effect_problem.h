@@ -29,6 +29,7 @@ class EffectProblem : public LeastSquares {
     double most_rate = 10000;     // sub-steps a second; a stiffer system cannot be evaluated
     double difference = 1e-5;     // longest entry of the step of J v; longer where contacts jump
     int threads = 1;
+    bool single_precision = false;
     double observer_gain = 0;  // corrects towards all that the recordings see, whatever its use
   };
 

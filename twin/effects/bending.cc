@@ -25,6 +25,7 @@ class BendingForce : public BendEffectForce {
 class Bending : public Effect {
  public:
   std::string name() const override { return "bending"; }
+  bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"flexural_rigidity_n_m2", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }

@@ -25,6 +25,7 @@ class BendingDampingForce : public BendEffectForce {
 class BendingDamping : public Effect {
  public:
   std::string name() const override { return "bending_damping"; }
+  bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"damping_n_m2_s", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }

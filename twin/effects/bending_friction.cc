@@ -50,6 +50,7 @@ class BendingFrictionForce : public BendEffectForce {
 class BendingFriction : public Effect {
  public:
   std::string name() const override { return "bending_friction"; }
+  bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"moment_n_m", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"slip_angle_rad", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};

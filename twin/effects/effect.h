@@ -89,6 +89,9 @@ class Effect {
   virtual void ChangeAdjoint(const Eigen::VectorXd& values, const Setting& before,
                              SystemGradient* gradient, Eigen::VectorXd* values_bar) const;
 
+  // Whether it is about bending, which in a solid its springs account for.
+  virtual bool bends() const { return false; }
+
   // How much later than recorded the controllers move, s. If `delays`, it is the first value.
   virtual bool delays() const { return false; }
 

@@ -62,6 +62,7 @@ class RestBendForce : public BendEffectForce {
 class RestBend : public Effect {
  public:
   std::string name() const override { return "rest_bend"; }
+  bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"moment_up_n_m", -10, 10, 1e-3, kKnots}, {"moment_side_n_m", -10, 10, 1e-3, kKnots}};
   }
