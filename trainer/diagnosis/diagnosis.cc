@@ -32,9 +32,9 @@ constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.
 constexpr double kSimplyExplained = 0.8;
 
 // Shares of the work, as the journal tells it: refits without an effect, then rounds, and of a
-// round the search.
+// round the search and the springs, after which comes another choice of the body.
 constexpr WorkShare kCommonShare{0, 0.2}, kSpringShare{0.2, 0.3};
-constexpr double kSearchPart = 0.8;
+constexpr double kSearchPart = 0.5, kSpringPart = 0.6;
 
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
@@ -98,13 +98,14 @@ std::vector<EffectCandidate> RankEffects(const EffectSearchResult& search, const
 // The loop over effects.
 class Loop {
  public:
-  Loop(EffectFitting* fitting, double noise_floor, bool trained_on, const DiagnosisOptions& options)
+  Loop(const EffectFitting& fitting, double noise_floor, bool trained_on,
+       const DiagnosisOptions& options)
       : fitting_(fitting),
         noise_floor_(noise_floor),
         trained_on_(trained_on),
         options_(options),
-        effects_(EffectsFor(*fitting->recordings()[0].recording, fitting->bodies()[0].base)),
-        block_(static_cast<int>(std::ceil(kBlock * fitting->recordings()[0].recording->fps))) {}
+        effects_(EffectsFor(*fitting.recordings()[0].recording, fitting.bodies()[0].base)),
+        block_(static_cast<int>(std::ceil(kBlock * fitting.recordings()[0].recording->fps))) {}
 
   int block() const { return block_; }
   const EffectFit& accepted() const { return accepted_; }
@@ -115,9 +116,10 @@ class Loop {
   // The refit of common factors without a new effect; false if the model diverges.
   bool FitCommon(const std::vector<EffectValues>& known) {
     bodies_ = FitBodies(fitting_, known, kCommonShare.Part(0, 0.7));
-    const auto base = FitBest(*fitting_, bodies_, kCommonShare.Part(0.7, 1));
-    if (!base) return false;
-    common_ = accepted_ = *base;
+    std::vector<EffectFit> free = bodies_;
+    FitFreely(fitting_, kCommonShare.Part(0.7, 1), &free);
+    if (free.empty()) return false;
+    common_ = accepted_ = free[0];
     return true;
   }
 
@@ -129,9 +131,8 @@ class Loop {
   // Single springs, too, unless those of the twin were better.
   void FitSprings() {
     if (!trained_on_ || accepted_.as_trained) return;
-    fitting_->journal().Stage(kSpringShare, kSpringSteps,
-                              "refitting springs without any new effect");
-    fitting_->RefitSprings(kSpringSteps, &accepted_);
+    accepted_ =
+        WithSprings({accepted_}, kSpringShare, "refitting springs without any new effect")[0];
   }
 
   // Looks for one more effect; false if none is accepted.
@@ -141,15 +142,13 @@ class Loop {
     if (explained) return false;
     const WorkShare stage = ShareOf(round);
     const EffectSearchResult search =
-        SearchEffects(*fitting_, bodies_, effects_, stage.Part(0, kSearchPart));
+        SearchEffects(fitting_, bodies_, effects_, stage.Part(0, kSearchPart));
     if (search.fits.empty()) return false;
     const std::size_t best = ChooseSimplest(search.fits, block_, options_.seed);
     if (round == 0) candidates_ = RankEffects(search, common_, best, block_, options_.seed);
     const EffectFit chosen = search.fits[best];
-    EffectFit with_springs = chosen;
-    fitting_->journal().Stage(stage.Part(kSearchPart, 1), kSpringSteps,
-                              "refitting springs with " + chosen.start.back().name);
-    if (trained_on_) fitting_->RefitSprings(kSpringSteps, &with_springs);
+    EffectFit with_springs = WithSprings({chosen}, stage.Part(kSearchPart, kSpringPart),
+                                         "refitting springs with " + chosen.start.back().name)[0];
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
     const bool without_springs =
@@ -161,6 +160,7 @@ class Loop {
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
+    ChooseBodyAnew(stage.Part(kSpringPart, 1));
     return true;
   }
 
@@ -169,6 +169,29 @@ class Loop {
   WorkShare ShareOf(int round) const {
     const double left = (1 - kSpringShare.last) * std::pow(0.5, round);
     return {1 - left, round + 1 == options_.most_effects ? 1 : 1 - left / 2};
+  }
+
+  std::vector<EffectFit> WithSprings(std::vector<EffectFit> fits, const WorkShare& stage,
+                                     const std::string& status) const {
+    if (!trained_on_ || fits.empty()) return fits;
+    fitting_.journal().Stage(stage, kSpringSteps * static_cast<int>(fits.size()), status);
+    fitting_.RefitSprings(kSpringSteps, &fits);
+    return fits;
+  }
+
+  // What was missing may have made another body look better than the right one.
+  void ChooseBodyAnew(const WorkShare& stage) {
+    if (fitting_.bodies().size() == 1) return;
+    std::vector<EffectFit> fits = FitBodies(fitting_, common_.system.effects, stage.Part(0, 0.4));
+    FitFreely(fitting_, stage.Part(0.4, 0.6), &fits);
+    const std::vector<EffectFit> with_springs =
+        WithSprings(fits, stage.Part(0.6, 1), "refitting springs of the best bodies");
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      if (with_springs[i].track.held >= accepted_.track.held) continue;
+      accepted_ = with_springs[i];
+      common_ = fits[i];
+      bodies_ = {common_};
+    }
   }
 
   // Whether the effect takes away a part `least_gain` of the error above the noise. `tried`: refits
@@ -182,7 +205,7 @@ class Loop {
            gain.mean > options_.least_noise * noise_floor_;
   }
 
-  EffectFitting* fitting_;
+  const EffectFitting& fitting_;
   double noise_floor_;
   bool trained_on_;
   DiagnosisOptions options_;
@@ -259,9 +282,9 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   for (const Recording& recording : held_out) ExpectSameObject(twin, recording);
   const std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
   result.noise_floor = NoiseFloor(splits);
-  EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads,
-                        options.journal);
-  Loop loop(&fitting, result.noise_floor, result.trained_on, options);
+  const EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits,
+                              options.threads, options.journal);
+  Loop loop(fitting, result.noise_floor, result.trained_on, options);
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
   if (!loop.FitCommon(known)) {
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",

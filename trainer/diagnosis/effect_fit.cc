@@ -21,6 +21,10 @@ constexpr int kSpringConjugateGradients = 20;
 // Of an effect's parameters beside the springs' own (fit_model.h), as Levenberg-Marquardt has it.
 constexpr double kEffectPrecision = 0.25, kEffectScale = 30;
 
+// Of single springs, first under an observer with this gain.
+constexpr double kFollowedGain = 0.05;
+constexpr int kFollowedSteps = 3;
+
 constexpr double kSlow = 0.99;  // a step of Gauss-Newton that leaves more gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end it
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
@@ -80,6 +84,10 @@ void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* f
                 Mean(fit->held)};
 }
 
+PieceKey KeyOf(const std::string& kind, const EffectFit& fit) {
+  return PieceKey(kind).Add(static_cast<double>(fit.body)).Add(fit.start_substeps).Add(fit.start);
+}
+
 EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
                              std::vector<SplitRecording> recordings, int threads, Journal* journal)
     : bodies_(std::move(bodies)),
@@ -93,43 +101,49 @@ EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
 
 double EffectFitting::difference() const { return FactorDifference(*recordings_[0].recording); }
 
-EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) {
-  const Recording& recording = *recordings_[0].recording;
-  EffectFit fit;
-  fit.body = body;
-  fit.start = effects;
-  DiagnosisBody& tried = bodies_[body];
-  const SpringMassSystem base = tried.base;
-  for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
-    SpringMassSystem scaled = base;
-    if (!tried.trusted) ScaleToSubsteps(1 / recording.fps, substeps, kStepSafety, &scaled);
-    EffectProblem problem = MakeProblem(EffectModel(CommonFactors(scaled, recording), 1, effects),
-                                        tried.controller_velocity, kObserverGains[0]);
-    const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());
-    if (!problem.FixSubsteps(x)) continue;
-    const auto r = problem.Residuals(x);
-    if (!r || r->squaredNorm() >= fit.misfit) continue;
-    fit.misfit = r->squaredNorm();
-    fit.x = x;
-    tried.base = scaled;
-    if (tried.trusted) break;
+SpringMassSystem EffectFitting::Base(std::size_t body, double start_substeps) const {
+  SpringMassSystem base = bodies_[body].base;
+  if (!bodies_[body].trusted) {
+    ScaleToSubsteps(1 / recordings_[0].recording->fps, start_substeps, kStepSafety, &base);
   }
-  return fit;
+  return base;
+}
+
+EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) const {
+  EffectFit best;
+  for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
+    EffectFit fit;
+    fit.body = body;
+    fit.start = effects;
+    fit.start_substeps = substeps;
+    const EffectModel model = Model(fit);
+    fit.x = Eigen::VectorXd::Zero(model.size());
+    EffectProblem problem =
+        MakeProblem(model, bodies_[body].controller_velocity, kObserverGains[0], 1);
+    if (!problem.FixSubsteps(fit.x)) continue;
+    const auto r = problem.Residuals(fit.x);
+    if (!r || r->squaredNorm() >= best.misfit) continue;
+    fit.misfit = r->squaredNorm();
+    best = std::move(fit);
+    if (bodies_[body].trusted) break;
+  }
+  return best;
 }
 
 EffectModel EffectFitting::Model(const EffectFit& fit) const {
   const DiagnosisBody& body = bodies_[fit.body];
-  return EffectModel(CommonFactors(body.base, *recordings_[0].recording),
+  return EffectModel(CommonFactors(Base(fit.body, fit.start_substeps), *recordings_[0].recording),
                      body.trusted ? kTrustedScale : 1, fit.start);
 }
 
 EffectProblem EffectFitting::Problem(const EffectFit& fit, double gain) const {
-  return MakeProblem(Model(fit), bodies_[fit.body].controller_velocity, gain);
+  return MakeProblem(Model(fit), bodies_[fit.body].controller_velocity, gain, 1);
 }
 
-EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velocity,
-                                         double gain) const {
+EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velocity, double gain,
+                                         int threads) const {
   EffectProblem::Options options;
+  options.threads = threads;
   options.most_rate = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal
                           ? kMostCommonRate
                           : kMostRate;
@@ -149,9 +163,8 @@ bool EffectFitting::DescendOne(double gain, int steps, EffectFit* fit) const {
   state.x = fit->x;
   state.damping = fit->damping;
   for (int step = 0; step < steps && !state.converged; ++step) {
-    PieceKey key("Levenberg-Marquardt");
-    key.Add(static_cast<double>(fit->body)).Add(fit->start).Add(gain);
-    const Eigen::VectorXd after = journal().Get(key.Add(state.x).Add(state.damping), [&] {
+    PieceKey key = KeyOf("Levenberg-Marquardt", *fit);
+    const Eigen::VectorXd after = journal().Get(key.Add(gain).Add(state.x).Add(state.damping), [&] {
       if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
       return Pack(LevenbergMarquardtStep(
           [&](const Eigen::VectorXd& at) { return problem.Residuals(at); }, state, options));
@@ -191,29 +204,41 @@ void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
   ForEach(threads_, fits, [&](EffectFit* fit) { return Judge(fit); });
 }
 
-void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
+void EffectFitting::RefitSpringsOfOne(int steps, int threads, EffectFit* fit) const {
   SpringMassSystem base = fit->system;
   base.effects.clear();
-  EffectProblem problem = MakeProblem(
-      EffectModel(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects),
-      bodies_[fit->body].controller_velocity, 0);
-  const GaussNewtonOptions prior = Prior(problem.model());
+  const EffectModel model(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects);
+  const bool velocity = bodies_[fit->body].controller_velocity;
+  const GaussNewtonOptions prior = Prior(model);
   GaussNewtonState state;
-  state.x = Eigen::VectorXd::Zero(problem.model().size());
-  state.damping = 1e-3;
-  int slow = 0;
-  for (int step = 0; step < steps && !state.converged && slow < kMostSlow; ++step) {
-    const double before = state.mean_square;
-    PieceKey key("Gauss-Newton");
-    key.Add(static_cast<double>(fit->body)).Add(fit->start).Add(fit->x);
-    const Eigen::VectorXd after = journal().Get(key.Add(state.x).Add(state.damping), [&] {
-      return Pack(GaussNewtonStep(&problem, state, prior));
-    });
-    Unpack(after, &state);
-    slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
+  state.x = Eigen::VectorXd::Zero(model.size());
+  for (const bool followed : {true, false}) {
+    const double gain = followed ? kFollowedGain : 0;
+    EffectProblem problem = MakeProblem(model, velocity, gain, threads);
+    state.damping = 1e-3;
+    state.converged = false;
+    int slow = 0;
+    for (int step = 0; step < (followed ? kFollowedSteps : steps); ++step) {
+      const double before = state.mean_square;
+      PieceKey key = KeyOf("Gauss-Newton", *fit);
+      const Eigen::VectorXd after =
+          journal().Get(key.Add(fit->x).Add(gain).Add(state.x).Add(state.damping),
+                        [&] { return Pack(GaussNewtonStep(&problem, state, prior)); });
+      Unpack(after, &state);
+      slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
+      if (state.converged || slow == kMostSlow) break;
+    }
   }
+  EffectProblem problem = MakeProblem(model, velocity, 0, threads);
   EffectFit refitted = *fit;
   if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
+}
+
+void EffectFitting::RefitSprings(int steps, std::vector<EffectFit>* fits) const {
+  const auto count = static_cast<int>(fits->size());
+  ParallelFor(count, threads_, [&](int i) {
+    RefitSpringsOfOne(steps, std::max(1, threads_ / count), &(*fits)[static_cast<std::size_t>(i)]);
+  });
 }
 
 }  // namespace physpring

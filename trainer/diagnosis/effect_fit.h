@@ -21,6 +21,7 @@ struct TrackPair {
 
 struct EffectFit {
   std::size_t body = 0;
+  double start_substeps = 0;        // a frame, as stiff as which the body's springs began
   std::vector<EffectValues> start;  // of the effects, as the search began
   Eigen::VectorXd x;                // common factors, then effects (effect_model.h)
   double misfit = std::numeric_limits<double>::infinity();  // mean of r^2, m^2, where last fitted
@@ -38,6 +39,9 @@ struct EffectFit {
 // Sets `held` and `track` from what the fit predicted.
 void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* fit);
 
+// What a piece of work with this fit depends on, besides the fit's x.
+PieceKey KeyOf(const std::string& kind, const EffectFit& fit);
+
 class EffectFitting {
  public:
   // `journal` (it must outlive this) keeps what is worked out; without one nothing is kept.
@@ -54,7 +58,7 @@ class EffectFitting {
 
   // A fit of that body that begins as soft or stiff as predicts best under the highest gain. Not
   // fitted yet; its x is empty if the motion diverges at each stiffness.
-  EffectFit Begin(std::size_t body, const std::vector<EffectValues>& effects);
+  EffectFit Begin(std::size_t body, const std::vector<EffectValues>& effects) const;
 
   EffectModel Model(const EffectFit& fit) const;
   // Under an observer of this gain, which sees the fit frames only.
@@ -68,14 +72,17 @@ class EffectFitting {
   bool Judge(EffectFit* fit) const;
   void JudgeAll(std::vector<EffectFit>* fits) const;  // those that diverge are taken out
 
-  // Single springs, too, for at most `steps`; the fit stays
-  // as it is if that diverges.
-  void RefitSprings(int steps, EffectFit* fit) const;
+  // Single springs, too, under an observer and then for at most `steps` without one; a fit stays as
+  // it is if that diverges.
+  void RefitSprings(int steps, std::vector<EffectFit>* fits) const;
 
  private:
+  SpringMassSystem Base(std::size_t body, double start_substeps) const;
   bool Predict(EffectProblem* problem, const Eigen::VectorXd& x, EffectFit* fit) const;
-  EffectProblem MakeProblem(EffectModel model, bool controller_velocity, double gain) const;
+  EffectProblem MakeProblem(EffectModel model, bool controller_velocity, double gain,
+                            int threads) const;
   bool DescendOne(double gain, int steps, EffectFit* fit) const;
+  void RefitSpringsOfOne(int steps, int threads, EffectFit* fit) const;
 
   std::vector<DiagnosisBody> bodies_;
   std::vector<SplitRecording> recordings_;

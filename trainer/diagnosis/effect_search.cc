@@ -27,7 +27,7 @@ struct Cut {
 };
 // Bodies without effects, down to the gain of the trace and down to none; with an effect.
 constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 5, 4, 4}, {0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
-constexpr std::array<Cut, 2> kBestCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
+constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.1, 3, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
 
 std::string NewEffect(const EffectFit& fit) {
@@ -83,23 +83,21 @@ void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
 
 }  // namespace
 
-std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known,
-                                 const WorkShare& stage) {
+std::vector<EffectFit> FitBodies(const EffectFitting& fitting,
+                                 const std::vector<EffectValues>& known, const WorkShare& stage) {
   std::vector<EffectFit> fits;
-  for (std::size_t body = 0; body < fitting->bodies().size(); ++body) {
-    EffectFit fit = fitting->Begin(body, known);
+  for (std::size_t body = 0; body < fitting.bodies().size(); ++body) {
+    EffectFit fit = fitting.Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
-  if (!fits.empty()) Halve(*fitting, kBodyCuts, stage, kWithoutEffect, &fits);
+  if (!fits.empty()) Halve(fitting, kBodyCuts, stage, kWithoutEffect, &fits);
   return fits;
 }
 
-std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies,
-                                 const WorkShare& stage) {
-  if (!bodies.empty()) Halve(fitting, kBestCuts, stage, kWithoutEffect, &bodies);
-  JudgeAndSort(fitting, &bodies);
-  if (bodies.empty()) return {};
-  return bodies[0];
+void FitFreely(const EffectFitting& fitting, const WorkShare& stage,
+               std::vector<EffectFit>* bodies) {
+  if (!bodies->empty()) Halve(fitting, kFreeCuts, stage, kWithoutEffect, bodies);
+  JudgeAndSort(fitting, bodies);
 }
 
 EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,

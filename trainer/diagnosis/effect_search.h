@@ -8,7 +8,6 @@
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,12 @@ namespace physpring {
 
 // The bodies that fit best, as they are, fitted down to the gain of the trace; the best
 // first. Those that diverge are left out.
-std::vector<EffectFit> FitBodies(EffectFitting* fitting, const std::vector<EffectValues>& known,
-                                 const WorkShare& stage);
+std::vector<EffectFit> FitBodies(const EffectFitting& fitting,
+                                 const std::vector<EffectValues>& known, const WorkShare& stage);
 
-// The best of them on held-out frames after a fit without an observer; nothing if all diverge.
-std::optional<EffectFit> FitBest(const EffectFitting& fitting, std::vector<EffectFit> bodies,
-                                 const WorkShare& stage);
+// Fits them without an observer and judges them, least held-out error first.
+void FitFreely(const EffectFitting& fitting, const WorkShare& stage,
+               std::vector<EffectFit>* bodies);
 
 struct EffectSearchResult {
   std::vector<EffectTrace> traces;  // of each effect, on the best body

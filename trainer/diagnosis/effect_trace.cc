@@ -138,9 +138,8 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
     ParallelFor(static_cast<int>(jobs.size()), fitting.threads(), [&](int n) {
       Job& job = jobs[static_cast<std::size_t>(n)];
       const Effect& effect = *effects[job.effect];
-      PieceKey key(kind);
-      key.Add(static_cast<double>(fit.body)).Add(fit.start).Add(fit.x);
-      job.score = fitting.journal().Get(key.Add(effect.name()).Add(job.start), [&] {
+      PieceKey key = KeyOf(kind, fit);
+      job.score = fitting.journal().Get(key.Add(fit.x).Add(effect.name()).Add(job.start), [&] {
         return Eigen::VectorXd::Constant(1, score(effect, job.start));
       })[0];
     });
