@@ -127,10 +127,10 @@ void TopologyFit::Learn(const Eigen::VectorXd& weights_bar) {
 
 bool TopologyFit::Step() {
   if (iteration_ > kIterations) return false;
-  using Features = TrainOptions::Network::Features;
+  using Kind = TrainOptions::Network::Features;
   const double temperature = iteration_ == kIterations ? 0 : Temperature();
   // distances in units of their mean, so that the temperature means the same at all levels
-  if (options_.network.features == Features::kPositions) {
+  if (options_.network.features == Kind::kPositions) {
     const Eigen::VectorXd distance = PositionDistances();
     Draw(distance / distance.mean(), temperature);
   } else {
@@ -139,7 +139,7 @@ bool TopologyFit::Step() {
     const Tape::Node apart = tape.Distance(latent, FreePairs(twin_.levels.back().system));
     const double unit = tape.value(apart).mean();
     const Eigen::VectorXd distance_bar = Draw(tape.value(apart).col(0) / unit, temperature);
-    if (temperature > 0 && options_.network.features == Features::kLearned) {
+    if (temperature > 0 && options_.network.features == Kind::kLearned) {
       Eigen::VectorXd weights_bar = Eigen::VectorXd::Zero(weights_.size());
       tape.Backward({{apart, distance_bar / unit}}, &weights_bar);
       Learn(weights_bar);
