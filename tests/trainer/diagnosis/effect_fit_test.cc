@@ -24,20 +24,13 @@ Recording SofterRope() {
 }
 
 EffectFitting FittingOf(const Recording& recording) {
-  const DiagnosisBody body{MakeStartSystem(recording, {}), true, false, "rope"};
+  const DiagnosisBody body{MakeStartSystem(recording, {}), true, true, "rope"};
   return EffectFitting({body}, {HoldOutFrames(recording)}, 1);
-}
-
-EffectFit Start(const EffectFitting& fitting) {
-  EffectFit fit;
-  EffectProblem problem = fitting.Problem(fit, 0);
-  fit.x = Eigen::VectorXd::Zero(problem.model().size());
-  return fit;
 }
 
 Eigen::VectorXd ResidualsAt(const Recording& recording, double gain) {
   const EffectFitting fitting = FittingOf(recording);
-  const EffectFit fit = Start(fitting);
+  const EffectFit fit = fitting.Begin(0, {});
   EffectProblem problem = fitting.Problem(fit, gain);
   problem.FixSubsteps(fit.x);
   return *problem.Residuals(fit.x);
@@ -69,7 +62,7 @@ TEST(EffectFitting, JudgesWithoutAnObserver) {
   const Recording recording = SofterRope();
   const Recording other = WithOtherHeldFrames(recording);
   const EffectFitting fitting = FittingOf(recording), judged = FittingOf(other);
-  EffectFit fit = Start(fitting), same = fit;
+  EffectFit fit = fitting.Begin(0, {}), same = fit;
   std::vector<EffectFit> fits = {fit};
   fitting.Descend(0.5, 2, &fits);
   ASSERT_EQ(fits.size(), 1U);
