@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "trainer/diagnosis/effect_search.h"
@@ -115,7 +117,10 @@ class Loop {
 
   // The refit of common factors without a new effect; false if the model diverges.
   bool FitCommon(const std::vector<EffectValues>& known) {
-    bodies_ = FitBodies(fitting_, known, kCommonShare.Part(0, 0.7));
+    std::vector<std::size_t> all(fitting_.bodies().size());
+    std::iota(all.begin(), all.end(), 0);
+    bodies_ = FitBodies(fitting_, all, known, kCommonShare.Part(0, 0.7));
+    for (const EffectFit& fit : bodies_) finalists_.insert(fit.body);
     std::vector<EffectFit> free = bodies_;
     FitFreely(fitting_, kCommonShare.Part(0.7, 1), &free);
     if (free.empty()) return false;
@@ -179,13 +184,18 @@ class Loop {
     return fits;
   }
 
-  // What was missing may have made another body look better than the right one.
+  // The body was chosen without single springs: with them, another one may predict better, such as
+  // that of the twin, which was chosen with them.
   void ChooseBodyAnew(const WorkShare& stage) {
-    if (fitting_.bodies().size() == 1) return;
-    std::vector<EffectFit> fits = FitBodies(fitting_, common_.system.effects, stage.Part(0, 0.4));
+    std::vector<std::size_t> others;
+    for (std::size_t body : finalists_) {
+      if (body != common_.body) others.push_back(body);
+    }
+    std::vector<EffectFit> fits =
+        FitBodies(fitting_, others, common_.system.effects, stage.Part(0, 0.4));
     FitFreely(fitting_, stage.Part(0.4, 0.6), &fits);
     const std::vector<EffectFit> with_springs =
-        WithSprings(fits, stage.Part(0.6, 1), "refitting springs of the best bodies");
+        WithSprings(fits, stage.Part(0.6, 1), "refitting springs of the other bodies");
     for (std::size_t i = 0; i < fits.size(); ++i) {
       if (with_springs[i].track.held >= accepted_.track.held) continue;
       accepted_ = with_springs[i];
@@ -211,8 +221,9 @@ class Loop {
   DiagnosisOptions options_;
   std::vector<const Effect*> effects_;
   int block_;
-  std::vector<EffectFit> bodies_;  // that effects are added to
-  EffectFit common_, accepted_;    // without and with the springs' own parameters
+  std::set<std::size_t> finalists_ = {0};  // bodies, the twin's own among them
+  std::vector<EffectFit> bodies_;          // that effects are added to
+  EffectFit common_, accepted_;            // without and with the springs' own parameters
   std::vector<EffectCandidate> candidates_;
 };
 
