@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "trainer/diagnosis/effect_search.h"
@@ -34,9 +32,9 @@ constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.
 constexpr double kSimplyExplained = 0.8;
 
 // Shares of the work, as the journal tells it: refits without an effect, then rounds, and of a
-// round the search and the springs, after which comes another choice of the body.
+// round the search.
 constexpr WorkShare kCommonShare{0, 0.2}, kSpringShare{0.2, 0.3};
-constexpr double kSearchPart = 0.5, kSpringPart = 0.6;
+constexpr double kSearchPart = 0.8;
 
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
@@ -117,10 +115,7 @@ class Loop {
 
   // The refit of common factors without a new effect; false if the model diverges.
   bool FitCommon(const std::vector<EffectValues>& known) {
-    std::vector<std::size_t> all(fitting_.bodies().size());
-    std::iota(all.begin(), all.end(), 0);
-    bodies_ = FitBodies(fitting_, all, known, kCommonShare.Part(0, 0.7));
-    for (const EffectFit& fit : bodies_) finalists_.insert(fit.body);
+    bodies_ = FitBodies(fitting_, known, kCommonShare.Part(0, 0.7));
     std::vector<EffectFit> free = bodies_;
     FitFreely(fitting_, kCommonShare.Part(0.7, 1), &free);
     if (free.empty()) return false;
@@ -136,8 +131,7 @@ class Loop {
   // Single springs, too, unless those of the twin were better.
   void FitSprings() {
     if (!trained_on_ || accepted_.as_trained) return;
-    accepted_ =
-        WithSprings({accepted_}, kSpringShare, "refitting springs without any new effect")[0];
+    accepted_ = WithSprings(accepted_, kSpringShare, "refitting springs without any new effect");
   }
 
   // Looks for one more effect; false if none is accepted.
@@ -152,8 +146,8 @@ class Loop {
     const std::size_t best = ChooseSimplest(search.fits, block_, options_.seed);
     if (round == 0) candidates_ = RankEffects(search, common_, best, block_, options_.seed);
     const EffectFit chosen = search.fits[best];
-    EffectFit with_springs = WithSprings({chosen}, stage.Part(kSearchPart, kSpringPart),
-                                         "refitting springs with " + chosen.start.back().name)[0];
+    EffectFit with_springs = WithSprings(chosen, stage.Part(kSearchPart, 1),
+                                         "refitting springs with " + chosen.start.back().name);
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
     const bool without_springs =
@@ -165,7 +159,6 @@ class Loop {
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
-    ChooseBodyAnew(stage.Part(kSpringPart, 1));
     return true;
   }
 
@@ -176,32 +169,11 @@ class Loop {
     return {1 - left, round + 1 == options_.most_effects ? 1 : 1 - left / 2};
   }
 
-  std::vector<EffectFit> WithSprings(std::vector<EffectFit> fits, const WorkShare& stage,
-                                     const std::string& status) const {
-    if (!trained_on_ || fits.empty()) return fits;
-    fitting_.journal().Stage(stage, kSpringSteps * static_cast<int>(fits.size()), status);
-    fitting_.RefitSprings(kSpringSteps, &fits);
-    return fits;
-  }
-
-  // The body was chosen without single springs: with them, another one may predict better, such as
-  // that of the twin, which was chosen with them.
-  void ChooseBodyAnew(const WorkShare& stage) {
-    std::vector<std::size_t> others;
-    for (std::size_t body : finalists_) {
-      if (body != common_.body) others.push_back(body);
-    }
-    std::vector<EffectFit> fits =
-        FitBodies(fitting_, others, common_.system.effects, stage.Part(0, 0.4));
-    FitFreely(fitting_, stage.Part(0.4, 0.6), &fits);
-    const std::vector<EffectFit> with_springs =
-        WithSprings(fits, stage.Part(0.6, 1), "refitting springs of the other bodies");
-    for (std::size_t i = 0; i < fits.size(); ++i) {
-      if (with_springs[i].track.held >= accepted_.track.held) continue;
-      accepted_ = with_springs[i];
-      common_ = fits[i];
-      bodies_ = {common_};
-    }
+  EffectFit WithSprings(EffectFit fit, const WorkShare& stage, const std::string& status) const {
+    if (!trained_on_) return fit;
+    fitting_.journal().Stage(stage, kSpringSteps, status);
+    fitting_.RefitSprings(kSpringSteps, &fit);
+    return fit;
   }
 
   // Whether the effect takes away a part `least_gain` of the error above the noise. `tried`: refits
@@ -221,9 +193,8 @@ class Loop {
   DiagnosisOptions options_;
   std::vector<const Effect*> effects_;
   int block_;
-  std::set<std::size_t> finalists_ = {0};  // bodies, the twin's own among them
-  std::vector<EffectFit> bodies_;          // that effects are added to
-  EffectFit common_, accepted_;            // without and with the springs' own parameters
+  std::vector<EffectFit> bodies_;  // that effects are added to
+  EffectFit common_, accepted_;    // without and with the springs' own parameters
   std::vector<EffectCandidate> candidates_;
 };
 

@@ -204,7 +204,7 @@ void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
   ForEach(threads_, fits, [&](EffectFit* fit) { return Judge(fit); });
 }
 
-void EffectFitting::RefitSpringsOfOne(int steps, int threads, EffectFit* fit) const {
+void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
   SpringMassSystem base = fit->system;
   base.effects.clear();
   const EffectModel model(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects);
@@ -214,7 +214,7 @@ void EffectFitting::RefitSpringsOfOne(int steps, int threads, EffectFit* fit) co
   state.x = Eigen::VectorXd::Zero(model.size());
   for (const bool followed : {true, false}) {
     const double gain = followed ? kFollowedGain : 0;
-    EffectProblem problem = MakeProblem(model, velocity, gain, threads);
+    EffectProblem problem = MakeProblem(model, velocity, gain, threads_);
     state.damping = 1e-3;
     state.converged = false;
     int slow = 0;
@@ -229,16 +229,9 @@ void EffectFitting::RefitSpringsOfOne(int steps, int threads, EffectFit* fit) co
       if (state.converged || slow == kMostSlow) break;
     }
   }
-  EffectProblem problem = MakeProblem(model, velocity, 0, threads);
+  EffectProblem problem = MakeProblem(model, velocity, 0, threads_);
   EffectFit refitted = *fit;
   if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
-}
-
-void EffectFitting::RefitSprings(int steps, std::vector<EffectFit>* fits) const {
-  const auto count = static_cast<int>(fits->size());
-  ParallelFor(count, threads_, [&](int i) {
-    RefitSpringsOfOne(steps, std::max(1, threads_ / count), &(*fits)[static_cast<std::size_t>(i)]);
-  });
 }
 
 }  // namespace physpring

@@ -72,9 +72,9 @@ class EffectFitting {
   bool Judge(EffectFit* fit) const;
   void JudgeAll(std::vector<EffectFit>* fits) const;  // those that diverge are taken out
 
-  // Single springs, too, under an observer and then for at most `steps` without one; a fit stays as
-  // it is if that diverges.
-  void RefitSprings(int steps, std::vector<EffectFit>* fits) const;
+  // Single springs, too, under an observer and then for at most `steps` without one; the fit
+  // stays as it is if that diverges.
+  void RefitSprings(int steps, EffectFit* fit) const;
 
  private:
   SpringMassSystem Base(std::size_t body, double start_substeps) const;
@@ -82,7 +82,6 @@ class EffectFitting {
   EffectProblem MakeProblem(EffectModel model, bool controller_velocity, double gain,
                             int threads) const;
   bool DescendOne(double gain, int steps, EffectFit* fit) const;
-  void RefitSpringsOfOne(int steps, int threads, EffectFit* fit) const;
 
   std::vector<DiagnosisBody> bodies_;
   std::vector<SplitRecording> recordings_;

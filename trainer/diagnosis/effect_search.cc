@@ -84,10 +84,9 @@ void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
 }  // namespace
 
 std::vector<EffectFit> FitBodies(const EffectFitting& fitting,
-                                 const std::vector<std::size_t>& bodies,
                                  const std::vector<EffectValues>& known, const WorkShare& stage) {
   std::vector<EffectFit> fits;
-  for (std::size_t body : bodies) {
+  for (std::size_t body = 0; body < fitting.bodies().size(); ++body) {
     EffectFit fit = fitting.Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }

@@ -17,10 +17,9 @@ namespace physpring {
 
 // `stage`, here and below: the share of the work, for the journal.
 
-// Those of `bodies` (indices) that fit best with effects that are known, fitted down to the gain of
-// the trace, the best first; two at most. Those that diverge are left out.
+// The bodies that fit best with the effects that are known, fitted down to the gain of the trace;
+// the best first. Those that diverge are left out.
 std::vector<EffectFit> FitBodies(const EffectFitting& fitting,
-                                 const std::vector<std::size_t>& bodies,
                                  const std::vector<EffectValues>& known, const WorkShare& stage);
 
 // Fits them without an observer and judges them, least held-out error first.
