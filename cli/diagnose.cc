@@ -19,6 +19,7 @@
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
+#include "cli/resume_options.h"
 #include "trainer/diagnosis/diagnosis.h"
 #include "trainer/fit_data.h"
 #include "twin/atomic_file.h"
@@ -32,8 +33,7 @@ struct Arguments {
   std::string twin, output, json;
   std::vector<std::string> recordings, held_out;
   DiagnosisOptions options;
-  bool resume = false, force = false;
-  double checkpoint_interval = 10;  // s
+  ResumeOptions run;
 };
 
 struct Outputs {
@@ -67,7 +67,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
   using Clock = std::chrono::steady_clock;
   const InterruptWatch watch;
   Journal journal;
-  if (arguments.resume) checkpoint.Resume(&journal);
+  if (arguments.run.resume) checkpoint.Resume(&journal);
   std::optional<Progress> progress;  // from the first piece of work that is not in the checkpoint
   double done = 0;
   journal.progress = [&](double share, const std::string& status) {
@@ -79,7 +79,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
   Clock::time_point written = Clock::now();
   journal.kept = [&] {
     const std::chrono::duration<double> since = Clock::now() - written;
-    if (since.count() < arguments.checkpoint_interval) return;
+    if (since.count() < arguments.run.checkpoint_interval) return;
     checkpoint.Write(journal);
     written = Clock::now();
   };
@@ -109,7 +109,7 @@ void Run(const Arguments& arguments) {
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, data.recordings, judged,
                                        arguments.options);
-  checkpoint.ExpectReplaceable(outputs.report, arguments.resume || arguments.force);
+  checkpoint.ExpectReplaceable(outputs.report, arguments.run.resume || arguments.run.force);
   const Diagnosis diagnosis = DiagnoseWith(checkpoint, twin, data.recordings, judged, arguments);
   const std::string json = FormatDiagnosisJson(diagnosis);
   WriteFileAtomically(outputs.report, json);
@@ -149,15 +149,9 @@ void AddDiagnoseCommand(CLI::App& app) {
       ->type_name("REC.npz|DIR");
   command->add_option("--json", arguments->json, "write report.json here, too")
       ->type_name("FILE.json");
-  CLI::Option* const resume = command->add_flag(
-      "--resume", arguments->resume, "go on with an unfinished diagnosis in DIR, if there is one");
-  command->add_flag("--force", arguments->force, "overwrite a diagnosis")->excludes(resume);
-  command
-      ->add_option("--checkpoint", arguments->checkpoint_interval,
-                   "seconds between checkpoints, at least")
-      ->check(NumberBetween(0, 1e6))
-      ->type_name("SECONDS")
-      ->capture_default_str();
+  AddResumeOptions(command, &arguments->run,
+                   "go on with an unfinished diagnosis in DIR, if there is one",
+                   "overwrite a diagnosis");
   AddSeed(command, &arguments->options.seed, "of the bootstrap");
   arguments->options.threads = AllCores();
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");

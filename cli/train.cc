@@ -20,6 +20,7 @@
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
+#include "cli/resume_options.h"
 #include "cli/training.h"
 #include "trainer/fit_data.h"
 #include "trainer/make_fitter.h"
@@ -38,8 +39,7 @@ struct Arguments {
   std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
   std::string cone = "auto";
   TrainOptions options;  // without what is a word above
-  bool resume = false, force = false;
-  double checkpoint_interval = 10;  // s
+  ResumeOptions run;
 };
 
 TrainOptions OptionsOf(const Arguments& arguments) {
@@ -153,14 +153,14 @@ void Run(const Arguments& arguments) {
   std::optional<Twin> dense;
   if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data);
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
-  checkpoint.ExpectReplaceable(arguments.resume || arguments.force);
+  checkpoint.ExpectReplaceable(arguments.run.resume || arguments.run.force);
   ExpectWritable(arguments, entries);
   const std::unique_ptr<Fitter> fitter = MakeFitter(data, options, dense);
-  if (arguments.resume) checkpoint.Resume(fitter.get());
-  OpenLog(arguments.log, arguments.resume);
+  if (arguments.run.resume) checkpoint.Resume(fitter.get());
+  OpenLog(arguments.log, arguments.run.resume);
   for (const Recording& recording : data.recordings) Warn(recording.warnings);
 
-  const TrainingRun run = RunTraining(fitter.get(), checkpoint, arguments.checkpoint_interval);
+  const TrainingRun run = RunTraining(fitter.get(), checkpoint, arguments.run.checkpoint_interval);
   if (!run.finished) {
     fmt::print(stderr,
                "physpring: stopped at {:.0f} %; the same command with --resume goes on "
@@ -269,15 +269,8 @@ void AddTrainCommand(CLI::App& app) {
   AddFitOptions(command, arguments.get());
   arguments->options.threads = AllCores();
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");
-  CLI::Option* const resume = command->add_flag("--resume", arguments->resume,
-                                                "go on from the output file, if there is one");
-  command->add_flag("--force", arguments->force, "overwrite a twin")->excludes(resume);
-  command
-      ->add_option("--checkpoint", arguments->checkpoint_interval,
-                   "seconds between checkpoints, at least")
-      ->check(NumberBetween(0, 1e6))
-      ->type_name("SECONDS")
-      ->capture_default_str();
+  AddResumeOptions(command, &arguments->run, "go on from the output file, if there is one",
+                   "overwrite a twin");
   command->add_option("--log", arguments->log, "write a line for each step")->type_name("FILE");
   command->callback([arguments] { Run(*arguments); });
 }
