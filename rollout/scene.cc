@@ -4,15 +4,11 @@
 #include <array>
 
 #include "rollout/mujoco_log.h"
+#include "rollout/scene_spec.h"
 #include "twin/error.h"
 
 namespace physpring {
 namespace {
-
-struct DeleteSpec {
-  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
-};
-using SpecPtr = std::unique_ptr<mjSpec, DeleteSpec>;
 
 ModelPtr Compile(mjSpec* spec, const std::string& where, std::vector<std::string>* warnings) {
   mjModel* model = nullptr;
@@ -35,30 +31,17 @@ ModelPtr LoadScene(const std::string& path, std::vector<std::string>* warnings) 
 }
 
 ModelPtr EditScene(const std::string& path, const SceneEdit& edit) {
-  std::array<char, 1024> message{};
   std::vector<std::string> ignored;
-  mjSpec* spec = nullptr;
-  CatchMujoco(
-      path, [&] { spec = mj_parseXML(path.c_str(), nullptr, message.data(), message.size()); },
-      &ignored);
-  if (!spec) throw Error(path + ": " + OneLine(message.data()));
-  const SpecPtr owner(spec);
-  edit(spec);
-  return Compile(spec, path, &ignored);
+  const SpecPtr spec = ParseSpec(path, &ignored);
+  edit(spec.get());
+  return Compile(spec.get(), path, &ignored);
 }
 
 ModelPtr CompileScene(const std::string& mjcf, const std::string& where, const SceneEdit& edit) {
-  std::array<char, 1024> message{};
   std::vector<std::string> warnings;
-  mjSpec* spec = nullptr;
-  CatchMujoco(
-      where,
-      [&] { spec = mj_parseXMLString(mjcf.c_str(), nullptr, message.data(), message.size()); },
-      &warnings);
-  if (!spec) throw Error(where + ": " + OneLine(message.data()));
-  const SpecPtr owner(spec);
-  edit(spec);
-  ModelPtr model = Compile(spec, where, &warnings);
+  const SpecPtr spec = ParseSpecText(mjcf, where, &warnings);
+  edit(spec.get());
+  ModelPtr model = Compile(spec.get(), where, &warnings);
   if (!warnings.empty()) throw Error(warnings.front());
   return model;
 }

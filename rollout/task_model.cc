@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include "rollout/mujoco_log.h"
+#include "rollout/scene_spec.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/npz.h"
@@ -16,22 +16,7 @@
 namespace physpring {
 namespace {
 
-struct DeleteSpec {
-  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
-};
 constexpr const char* kPrefix = "object_";  // of the level's names in the scene
-
-using SpecPtr = std::unique_ptr<mjSpec, DeleteSpec>;
-
-SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings) {
-  std::array<char, 1024> message{};
-  mjSpec* spec = nullptr;
-  CatchMujoco(
-      path, [&] { spec = mj_parseXML(path.c_str(), nullptr, message.data(), message.size()); },
-      warnings);
-  if (!spec) throw Error(path + ": " + OneLine(message.data()));
-  return SpecPtr(spec);
-}
 
 // The body that holds the nodes, in the scene: the level's first one.
 std::string ObjectBody(mjSpec* level, const std::string& file) {
