@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/output_files.h"
 #include "twin/cone_name.h"
 #include "twin/error.h"
 
@@ -15,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFinished = "train/finished";
+constexpr const char* kFinishedTraining = "train/finished";
 
 Json NumberOrAuto(int number) { return number > 0 ? Json(number) : Json("auto"); }
 
@@ -86,15 +87,10 @@ std::string NameOfTwin(const std::string& path) {
   return name;
 }
 
-bool Exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 }  // namespace
 
 bool IsFinished(const Twin& twin) {
-  const auto finished = twin.training_state.find(kFinished);
+  const auto finished = twin.training_state.find(kFinishedTraining);
   return finished == twin.training_state.end() || finished->second.ToInts() == std::vector<int>{1};
 }
 
@@ -175,7 +171,7 @@ Twin Checkpoint::Write(const Fitter& fitter, bool finished) const {
   twin.seed = labels_.seed;
   twin.training_state = fitter.Save();
   const int flag = finished ? 1 : 0;
-  twin.training_state[kFinished] = NpzArray::Ints({}, &flag);
+  twin.training_state[kFinishedTraining] = NpzArray::Ints({}, &flag);
   WriteTwin(twin, path_);
   return twin;
 }

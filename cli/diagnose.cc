@@ -29,7 +29,7 @@
 namespace physpring {
 namespace {
 
-struct Arguments {
+struct DiagnoseArguments {
   std::string twin, output, json;
   std::vector<std::string> recordings, held_out;
   DiagnosisOptions options;
@@ -41,7 +41,7 @@ struct Outputs {
 };
 
 // Before the work: makes the folder.
-Outputs MakeOutputs(const Arguments& arguments, const std::vector<RecordingEntry>& fit,
+Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<RecordingEntry>& fit,
                     const std::vector<RecordingEntry>& held_out) {
   const std::filesystem::path folder(arguments.output);
   std::error_code failure;
@@ -63,7 +63,7 @@ Outputs MakeOutputs(const Arguments& arguments, const std::vector<RecordingEntry
 // With progress and checkpoints. A signal leaves a checkpoint and throws Interrupted.
 Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
                        const std::vector<Recording>& recordings,
-                       const std::vector<Recording>& held_out, const Arguments& arguments) {
+                       const std::vector<Recording>& held_out, const DiagnoseArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const InterruptWatch watch;
   Journal journal;
@@ -99,7 +99,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
   }
 }
 
-void Run(const Arguments& arguments) {
+void Run(const DiagnoseArguments& arguments) {
   const Twin twin = ReadTwin(arguments.twin);
   const auto fit = ListRecordings(arguments.recordings, Role::kFit);
   const auto held_out = ListRecordings(arguments.held_out, Role::kHeldout);
@@ -130,7 +130,7 @@ void AddDiagnoseCommand(CLI::App& app) {
                          "recordings, adds it, and reports the "
                          "error before and after on frames not fitted. Ctrl-C leaves a "
                          "checkpoint.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<DiagnoseArguments>();
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command
       ->add_option("recordings", arguments->recordings,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/output_files.h"
 #include "twin/error.h"
 #include "twin/npz.h"
 
@@ -13,9 +14,9 @@ namespace physpring {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
-constexpr char kOf[] = "of", kFinished[] = "finished";
+constexpr char kOf[] = "of", kFinishedDiagnosis[] = "finished";
 
 std::vector<std::string> HashesOf(const std::vector<Recording>& recordings) {
   std::vector<std::string> hashes;
@@ -26,18 +27,13 @@ std::vector<std::string> HashesOf(const std::vector<Recording>& recordings) {
 // Throws Error unless the file is a checkpoint.
 Npz ReadCheckpoint(const std::string& path) {
   Npz arrays = ReadNpz(path);
-  for (const char* name : {kOf, kFinished}) {
+  for (const char* name : {kOf, kFinishedDiagnosis}) {
     if (!arrays.contains(name)) {
       throw Error(
           fmt::format("{}: is no checkpoint of a diagnosis: array {} is missing", path, name));
     }
   }
   return arrays;
-}
-
-bool Exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
 }
 
 }  // namespace
@@ -58,7 +54,7 @@ void DiagnosisCheckpoint::ExpectReplaceable(const std::string& report, bool allo
   const bool begun = Exists(path_);
   if (allowed || (!begun && !Exists(report))) return;
   const bool finished =
-      !begun || ReadCheckpoint(path_).at(kFinished).ToInts() == std::vector<int>{1};
+      !begun || ReadCheckpoint(path_).at(kFinishedDiagnosis).ToInts() == std::vector<int>{1};
   throw Error(fmt::format("{}: {}", fs::path(path_).parent_path().string(),
                           finished ? "holds a finished diagnosis; --force makes it anew"
                                    : "holds an unfinished diagnosis; --resume goes on with it, "
@@ -88,7 +84,7 @@ void DiagnosisCheckpoint::Resume(Journal* journal) const {
 void DiagnosisCheckpoint::Write(const Journal& journal) const {
   Npz arrays = journal.Save();
   const int flag = 0;
-  arrays[kFinished] = NpzArray::Ints({}, &flag);
+  arrays[kFinishedDiagnosis] = NpzArray::Ints({}, &flag);
   arrays[kOf] = NpzArray::Text(of_json_);
   WriteNpz(arrays, path_);
 }
@@ -96,7 +92,7 @@ void DiagnosisCheckpoint::Write(const Journal& journal) const {
 void DiagnosisCheckpoint::Finish() const {
   Npz arrays = ReadCheckpoint(path_);
   const int flag = 1;
-  arrays[kFinished] = NpzArray::Ints({}, &flag);
+  arrays[kFinishedDiagnosis] = NpzArray::Ints({}, &flag);
   WriteNpz(arrays, path_);
 }
 

@@ -22,7 +22,7 @@
 namespace physpring {
 namespace {
 
-struct Arguments {
+struct EvalArguments {
   std::string twin;
   std::vector<std::string> recordings;
   std::string json, trajectory, picture;
@@ -50,7 +50,7 @@ EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
 }
 
 // Before the work. Trajectories of several recordings go to a folder.
-void ExpectWritable(const Arguments& arguments, const std::vector<RecordingEntry>& entries) {
+void ExpectWritable(const EvalArguments& arguments, const std::vector<RecordingEntry>& entries) {
   std::vector<std::string> inputs{arguments.twin};
   for (const RecordingEntry& entry : entries) inputs.push_back(entry.path);
   std::error_code missing;
@@ -70,7 +70,7 @@ void WarnIfUseless(const Evaluation& evaluation) {
   }
 }
 
-void Run(const Arguments& arguments) {
+void Run(const EvalArguments& arguments) {
   const PredictOptions options{arguments.precision == "float", arguments.substeps};
   Evaluation evaluation{arguments.twin, ReadTwin(arguments.twin), options.single_precision, {}};
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
@@ -102,7 +102,7 @@ void AddEvalCommand(CLI::App& app) {
       "eval",
       "Predicts recordings of a twin's object with every level of the twin, and prints how far the "
       "predictions are from what was measured.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<EvalArguments>();
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command
       ->add_option("recordings", arguments->recordings,

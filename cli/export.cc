@@ -20,7 +20,7 @@
 namespace physpring {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::string twin, output;
   bool force = false;
   ExportOptions options;
@@ -96,7 +96,7 @@ std::string DescribeLevel(const ExportedLevel& level) {
                     1e3 * rounding.rest_length_max, level.flexes.tendons.size());
 }
 
-void Run(const Arguments& arguments, const std::string& command_line) {
+void Run(const ExportArguments& arguments, const std::string& command_line) {
   const Twin read = ReadTwin(arguments.twin);
   WarnIfUnfinished(read, arguments.twin);
   const bool free = arguments.options.controllers == ControllerKind::kNone;
@@ -158,7 +158,7 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
 void AddExportCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "export", "Writes the levels of a twin as MuJoCo models, with scenes to try them in.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExportArguments>();
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command->add_option("-o,--output", arguments->output, "folder to write")
       ->required()

@@ -45,10 +45,10 @@ Json Inspect(const std::string& path) {
 
 void AddInfoCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Says what is in a recording or a twin.");
-  struct Arguments {
+  struct InfoArguments {
     std::string file, json;
   };
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InfoArguments>();
   command->add_option("file", arguments->file, "recording or twin")->required()->type_name("FILE");
   command->add_option("--json", arguments->json, "write it as JSON, too")->type_name("FILE.json");
   command->callback([arguments] {

@@ -17,7 +17,7 @@
 namespace physpring {
 namespace {
 
-struct Arguments {
+struct InteriorArguments {
   std::string recording, mesh, output;
   double spacing = 0.01;
   bool force = false;
@@ -48,7 +48,7 @@ void AddInterior(const Points& interior, Recording* recording) {
   recording->velocity = velocity;
 }
 
-void Run(const Arguments& arguments) {
+void Run(const InteriorArguments& arguments) {
   ExpectOutputs({arguments.output}, {arguments.recording, arguments.mesh});
   ExpectNew(arguments.output, arguments.force);
   Recording recording = ReadRecording(arguments.recording);
@@ -75,7 +75,7 @@ void AddInteriorCommand(CLI::App& app) {
       "interior",
       "Fills a mesh of the object, as it is in frame 0 of a recording, with particles that no "
       "camera sees, and writes the recording with them.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InteriorArguments>();
   command->add_option("recording", arguments->recording, "recording")
       ->required()
       ->type_name("REC.npz");

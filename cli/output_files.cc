@@ -23,6 +23,11 @@ bool AreSame(const std::string& p, const std::string& q) {
 
 }  // namespace
 
+bool Exists(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 void ExpectOutputs(const std::vector<std::string>& outputs,
                    const std::vector<std::string>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {

@@ -12,6 +12,9 @@ namespace physpring {
 // Empty names are options that were not given.
 void ExpectOutputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
+// Whether there is a file or folder, as far as can be told.
+bool Exists(const std::string& path);
+
 // Throws Error if there is a file at `path`, unless `force`.
 void ExpectNew(const std::string& path, bool force);
 

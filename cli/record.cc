@@ -72,13 +72,13 @@ void AddRecordCommand(CLI::App& app) {
       "Simulates a MuJoCo scene with one soft body (a flex, or bodies joined by spatial tendons), "
       "held by mocap bodies that move along the scene's keyframes, and writes what a camera would "
       "have measured.");
-  struct Arguments {
+  struct RecordArguments {
     std::string scene, output;
     std::vector<std::string> effects;
     bool force = false;
     RecordOptions options;
   };
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RecordArguments>();
   RecordOptions& options = arguments->options;
   command->add_option("scene", arguments->scene, "scene (MJCF)")
       ->required()

@@ -31,7 +31,7 @@
 namespace physpring {
 namespace {
 
-struct Arguments {
+struct RolloutArguments {
   std::string task, json, save_scene, shard, states = "full";
   std::string video, quality = "fast";
   std::vector<std::string> cameras;  // in videos
@@ -82,7 +82,7 @@ void Report(const std::vector<JudgedPolicy>& policies, const std::string& json) 
 }
 
 // out.mp4, or out_level3_00007.mp4 where there are several.
-std::string VideoPath(const Arguments& arguments, int level, int episode) {
+std::string VideoPath(const RolloutArguments& arguments, int level, int episode) {
   const SweepOptions& sweep = arguments.sweep;
   if (sweep.levels.size() == 1 && std::min(arguments.films, sweep.episodes) == 1) {
     return arguments.video;
@@ -94,7 +94,7 @@ std::string VideoPath(const Arguments& arguments, int level, int episode) {
 }
 
 // Cameras where the policy looks or a video is wanted.
-void AddCameras(const Arguments& arguments, const Task& task, SweepHooks* hooks) {
+void AddCameras(const RolloutArguments& arguments, const Task& task, SweepHooks* hooks) {
   const PictureQuality quality =
       arguments.quality == "high" ? PictureQuality::kHigh : PictureQuality::kFast;
   hooks->prepare = [quality, &task](mjModel* model) {
@@ -110,7 +110,7 @@ void AddCameras(const Arguments& arguments, const Task& task, SweepHooks* hooks)
   };
 }
 
-void Run(const Arguments& arguments) {
+void Run(const RolloutArguments& arguments) {
   LoadPluginLibrary();
   const std::string folder = FolderOf(arguments.task);
   ExpectOutputs({arguments.json, arguments.save_scene, arguments.video}, {folder + "/task.json"});
@@ -149,7 +149,7 @@ void Run(const Arguments& arguments) {
   Report({{task.name, options.policy.text, sweep.episodes}}, arguments.json);
 }
 
-void AddSweepOptions(CLI::App* command, Arguments* arguments) {
+void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
   SweepOptions& sweep = arguments->sweep;
   command->add_option("--level", sweep.levels, "levels of the twin, as 0,3: the same episodes")
       ->delimiter(',')
@@ -196,7 +196,7 @@ void AddSweepOptions(CLI::App* command, Arguments* arguments) {
       ->type_name("I/N");
 }
 
-void AddPictureOptions(CLI::App* command, Arguments* arguments) {
+void AddPictureOptions(CLI::App* command, RolloutArguments* arguments) {
   command
       ->add_option(
           "--video", arguments->video,
@@ -241,7 +241,7 @@ std::vector<JudgedPolicy> ReadFolders(const std::vector<std::string>& folders) {
 void AddRolloutCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "rollout", "Runs a policy on a task, episode after episode, and counts successes.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RolloutArguments>();
   command->add_option("task", arguments->task, "folder with task.json")
       ->required()
       ->type_name("TASK");

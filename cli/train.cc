@@ -32,7 +32,7 @@
 namespace physpring {
 namespace {
 
-struct Arguments {
+struct TrainArguments {
   std::vector<std::string> recordings;
   std::string output, log, from;
   std::string reduction = "learned", features = "learned";
@@ -42,7 +42,7 @@ struct Arguments {
   ResumeOptions run;
 };
 
-TrainOptions OptionsOf(const Arguments& arguments) {
+TrainOptions OptionsOf(const TrainArguments& arguments) {
   using Optimizer = TrainOptions::Optimizer;
   using Reduction = TrainOptions::Reduction;
   const bool two_stage = arguments.method == "two-stage";
@@ -138,14 +138,14 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
 }
 
 // Before the work.
-void ExpectWritable(const Arguments& arguments, const std::vector<RecordingEntry>& entries) {
+void ExpectWritable(const TrainArguments& arguments, const std::vector<RecordingEntry>& entries) {
   std::vector<std::string> inputs;
   if (!arguments.from.empty()) inputs.push_back(arguments.from);
   for (const RecordingEntry& entry : entries) inputs.push_back(entry.path);
   ExpectOutputs({arguments.output, arguments.log}, inputs);
 }
 
-void Run(const Arguments& arguments) {
+void Run(const TrainArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const TrainOptions options = OptionsOf(arguments);
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kFit);
@@ -175,7 +175,7 @@ void Run(const Arguments& arguments) {
   PrintReport(arguments.output, run, fit_error, fitter->Status(), elapsed.count());
 }
 
-void AddHierarchyOptions(CLI::App* command, Arguments* arguments) {
+void AddHierarchyOptions(CLI::App* command, TrainArguments* arguments) {
   TrainOptions& options = arguments->options;
   command->add_option("--levels", options.levels, "levels of the twin, level 0 included")
       ->check(WholeNumberBetween(1, 10))
@@ -220,7 +220,7 @@ void AddHierarchyOptions(CLI::App* command, Arguments* arguments) {
       ->type_name("TWIN.npz");
 }
 
-void AddFitOptions(CLI::App* command, Arguments* arguments) {
+void AddFitOptions(CLI::App* command, TrainArguments* arguments) {
   TrainOptions& options = arguments->options;
   AddChoice(command, "--method", &arguments->method, {"full", "two-stage"},
             "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
@@ -256,7 +256,7 @@ void AddFitOptions(CLI::App* command, Arguments* arguments) {
 void AddTrainCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "train", "Learns a twin of an object from recordings of it. Ctrl-C leaves a checkpoint.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TrainArguments>();
   command
       ->add_option("recordings", arguments->recordings,
                    "recordings, or folders with a dataset.json (their `fit` ones)")

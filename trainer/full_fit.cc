@@ -15,7 +15,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostRecordings = 4;         // that common factors are fitted to
+constexpr int kMostCommonRecordings = 4;   // that common factors are fitted to
 constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
 constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
 constexpr int kStepsPerGain = 6;       // of common factors
@@ -65,7 +65,7 @@ void FullFit::StepChoose() {
 
 void FullFit::StepCommon() {
   const LevenbergMarquardtState factors =
-      StepFactors(model_, FitEpisodes(data_, kMostRecordings), options_,
+      StepFactors(model_, FitEpisodes(data_, kMostCommonRecordings), options_,
                   kObserverGains[state_.gain], state_.damping);
   model_.factors = factors.x;
   state_.damping = factors.damping;

@@ -18,14 +18,14 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostRecordings = 4;  // that common factors are fitted to
+constexpr int kMostLevelRecordings = 4;  // that common factors are fitted to
 constexpr int kMostSpringRecordings = 12;
 constexpr int kFirstGain = 1;  // of kObserverGains: a Galerkin projection is not far off
 constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
 constexpr int kStepsPerGain = 4;
 constexpr int kPatience = 5;  // epochs without gain on held-back frames
 constexpr int kGaussNewtonSteps = 6;
-constexpr int kConjugateGradientSteps = 12;
+constexpr int kLevelConjugateGradients = 12;
 
 // Of a frame: never more than level 0 needs.
 int MostSubsteps(const TwinLevel& dense, double fps) {
@@ -59,7 +59,7 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
       twin_(twin),
       level_(static_cast<int>(twin.levels.size()) - 1),
       most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
-      held_back_(HoldBack(data, kMostRecordings)),
+      held_back_(HoldBack(data, kMostLevelRecordings)),
       network_(network),
       gain_(kFirstGain),
       common_(Eigen::VectorXd::Zero(CommonParameters().size())),
@@ -109,7 +109,7 @@ SpringMassSystem LevelFit::CorrectedSystem() const {
 void LevelFit::StepCommon() {
   const Parameters parameters = CommonParameters();
   // the differences run in parallel
-  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostRecordings),
+  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostLevelRecordings),
                             MotionOptions(1, kObserverGains[gain_]));
   LevenbergMarquardtOptions options;
   options.threads = options_.threads;
@@ -236,7 +236,7 @@ void LevelFit::StepSprings() {
                         DirectionDifference(data_.recordings[0], options_.single_precision));
   const GaussNewtonState before{springs_, damping_, mean_square_, false};
   GaussNewtonOptions options = SpringPrior(parameters);
-  options.conjugate_gradient_steps = kConjugateGradientSteps;
+  options.conjugate_gradient_steps = kLevelConjugateGradients;
   const GaussNewtonState after = GaussNewtonStep(&problem, before, options);
   springs_ = after.x;
   damping_ = after.damping;

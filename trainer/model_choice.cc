@@ -17,7 +17,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostRecordings = 4;  // that start values are sought on
+constexpr int kMostChoiceRecordings = 4;  // that start values are sought on
 // Of each round: what is fitted under which of kObserverGains, and how many go on from it with
 // either treatment of the controllers' velocity (what that is worth shows with single springs).
 struct Round {
@@ -27,7 +27,7 @@ struct Round {
 };
 constexpr std::array<Round, 3> kRounds = {{{0, 1, 5, 3}, {2, 3, 6, 1}, {3, 3, 6, 1}}};
 constexpr int kRoundCount = static_cast<int>(kRounds.size());
-constexpr int kConjugateGradientSteps = 20;
+constexpr int kChoiceConjugateGradients = 20;
 // Start systems tried, in sub-steps a frame, and (on a ground) changes of the friction's factor.
 constexpr double kSoftest = 2, kStiffest = 64;
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
@@ -60,7 +60,7 @@ SpringMassSystem ChosenModel::System(const Recording& recording) const {
 }
 
 ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
-    : data_(data), options_(options), held_back_(HoldBack(data, kMostRecordings)) {
+    : data_(data), options_(options), held_back_(HoldBack(data, kMostChoiceRecordings)) {
   options_.single_precision = true;
   for (const Candidate& candidate : Candidates(first(), options)) {
     contenders_.push_back({{candidate, 0, {}, {}}, kInfinity});
@@ -148,7 +148,7 @@ void ModelChoice::StepSprings() {
   follow.rollout.observer_gain = kObserverGains[gain_];
   TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
-  prior.conjugate_gradient_steps = kConjugateGradientSteps;
+  prior.conjugate_gradient_steps = kChoiceConjugateGradients;
   const GaussNewtonState after =
       GaussNewtonStep(&problem, {springs_, damping_, mean_square_, false}, prior);
   springs_ = after.x;

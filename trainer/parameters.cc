@@ -5,16 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "trainer/logistic.h"
+
 namespace physpring {
 namespace {
-
-// Inverse of `top` / (1 + exp(-x)), kept off the ends.
-double Logit(double value, double top) {
-  const double p = std::clamp(value / top, 1e-3, 1 - 1e-3);
-  return std::log(p / (1 - p));
-}
-
-double Sigmoid(double x, double top) { return top / (1 + std::exp(-x)); }
 
 // Classes of about equal rest length: a new class begins where the sorted lengths jump by 3 %;
 // where that gives many classes (an irregular mesh), equally filled ones.

@@ -3,12 +3,16 @@
 #ifndef PHYSPRING_TWIN_NPZ_H_
 #define PHYSPRING_TWIN_NPZ_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace physpring {
+
+// A count, as an extent of an array.
+inline std::size_t Extent(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
 
 // One array, C order, little endian.
 struct NpzArray {

@@ -11,9 +11,9 @@ namespace {
 
 // The pads come down to both sides of the diagonal, so far from the corner, and close: the cloth
 // between them buckles up.
-constexpr double kPinch = 0.035;  // m
-constexpr double kTable = 0.022;  // m, of the hand: the pads press on the table
-constexpr double kLay = 0.055;    // m, of the hand where it opens
+constexpr double kPinch = 0.035;       // m
+constexpr double kClothTable = 0.022;  // m, of the hand: the pads press on the table
+constexpr double kLay = 0.055;         // m, of the hand where it opens
 // The arc is that much tighter than the cloth would allow: what hangs slack falls forward, m.
 constexpr double kSlack = 0.055;
 
@@ -39,13 +39,13 @@ std::vector<Waypoint> ClothFolding::Plan(int leg, const Observation& observation
     return HandDown({place.x(), place.y(), z}, yaw, gripper, frames);
   };
   const Eigen::Vector3d pinch = taken + kPinch * along, middle = (taken + target) / 2;
-  std::vector<Waypoint> way = {at(pinch, 0.15, 0, 40), at(pinch, kTable, 0, 30),
-                               at(pinch, kTable, 1, 25)};
+  std::vector<Waypoint> way = {at(pinch, 0.15, 0, 40), at(pinch, kClothTable, 0, 30),
+                               at(pinch, kClothTable, 1, 25)};
   const double radius = diagonal / 2 - kPinch - kSlack;
   for (const double degrees : {25, 55, 90, 125, 150}) {
     const double angle = Radians(degrees);
-    way.push_back(
-        at(middle - radius * std::cos(angle) * along, kTable + radius * std::sin(angle), 1, 20));
+    way.push_back(at(middle - radius * std::cos(angle) * along,
+                     kClothTable + radius * std::sin(angle), 1, 20));
   }
   const Eigen::Vector3d lay = middle + radius * along;
   for (const Waypoint& last : {at(lay, kLay, 1, 20), at(lay, kLay, 0, 18),

@@ -11,10 +11,10 @@ namespace {
 
 // Places on the rope, m from its end.
 constexpr double kFirst = 0.10, kSecond = 0.30;
-constexpr double kHalfSection = 0.012;  // m, of the rope about a place on it
-constexpr double kReach = 0.025;        // m, to both sides, for the rope's direction
+constexpr double kHalfSection = 0.012;     // m, of the rope about a place on it
+constexpr double kDirectionReach = 0.025;  // m, to both sides, for the rope's direction
 // Heights of the hand above the table, m: the pads reach 23 mm below it.
-constexpr double kTable = 0.025, kGrip = 0.013;
+constexpr double kRopeTable = 0.025, kGrip = 0.013;
 // Beyond the slot's centre, m: where the first place comes to lie.
 constexpr double kBeyond = 0.105;
 
@@ -36,9 +36,10 @@ Eigen::Vector3d RopeRouting::Section(const Points& particles, double arc) const 
 
 std::vector<Waypoint> RopeRouting::Grasp(const Points& particles, double arc, double height) const {
   const Eigen::Vector3d place = Section(particles, arc);
-  const Eigen::Vector3d along = Section(particles, arc - kReach) - Section(particles, arc + kReach);
+  const Eigen::Vector3d along =
+      Section(particles, arc - kDirectionReach) - Section(particles, arc + kDirectionReach);
   const double yaw = HalfTurnNear(std::atan2(along.y(), along.x()), slot_yaw_);
-  const Eigen::Vector3d low(place.x(), place.y(), std::max(kTable, place.z() + kGrip));
+  const Eigen::Vector3d low(place.x(), place.y(), std::max(kRopeTable, place.z() + kGrip));
   const Eigen::Vector3d high(place.x(), place.y(), height);
   return {HandDown(high, yaw, 0, 40), HandDown(low, yaw, 0, 20), HandDown(low, yaw, 1, 15)};
 }
@@ -57,8 +58,8 @@ std::vector<Waypoint> RopeRouting::Plan(int leg, const Observation& observation)
     up.z() = 0.14;
     way.push_back(HandDown(up, slot_yaw_, 1, 25));
     way.push_back(InSlotFrame(0, kBeyond, 0.12, 1, 45));
-    way.push_back(InSlotFrame(0, kBeyond, kTable, 1, 25));
-    way.push_back(InSlotFrame(0, kBeyond, kTable, 0, 12));
+    way.push_back(InSlotFrame(0, kBeyond, kRopeTable, 1, 25));
+    way.push_back(InSlotFrame(0, kBeyond, kRopeTable, 0, 12));
     way.push_back(InSlotFrame(0, kBeyond, 0.13, 0, 20));
     return way;
   }
@@ -73,8 +74,8 @@ std::vector<Waypoint> RopeRouting::Plan(int leg, const Observation& observation)
   way.push_back(InSlotFrame(0.7 * second.x() + 0.3 * x, second.y() + 0.01, 0.09, 1, 20));
   way.push_back(InSlotFrame(x + 0.01, -0.02, 0.13, 1, 30));
   way.push_back(InSlotFrame(x, y + 0.035, 0.09, 1, 20));
-  way.push_back(InSlotFrame(x, y, kTable, 1, 25));
-  way.push_back(InSlotFrame(x, y, kTable, 0, 12));
+  way.push_back(InSlotFrame(x, y, kRopeTable, 1, 25));
+  way.push_back(InSlotFrame(x, y, kRopeTable, 0, 12));
   way.push_back(InSlotFrame(x, y, 0.14, 0, 20));
   return way;
 }

@@ -8,8 +8,8 @@
 namespace physpring {
 namespace {
 
-constexpr double kTable = 0.027;                  // m, of the hand, for what lies on the table
-constexpr double kClear = 0.13, kRelease = 0.04;  // m, of the hand above the box's edge
+constexpr double kToyTable = 0.027;                    // m, of the hand, for what lies on the table
+constexpr double kClearOfBox = 0.13, kRelease = 0.04;  // m, of the hand above the box's edge
 
 }  // namespace
 
@@ -33,9 +33,9 @@ std::vector<Waypoint> ToyPacking::Plan(int leg, const Observation& observation) 
     const Eigen::Vector3d place(box_.pose.position.x(), box_.pose.position.y(), edge + above);
     return HandDown(place, box_yaw, gripper, frames);
   };
-  return {at_toy(0.16, 0, 45),     at_toy(kTable, 0, 25),        at_toy(kTable, 1, 25),
-          at_toy(0.2, 1, 30),      at_toy(edge + kClear, 1, 35), at_box(kClear, 1, 50),
-          at_box(kRelease, 1, 25), at_box(kRelease, 0, 12),      at_box(kClear, 0, 20)};
+  return {at_toy(0.16, 0, 45),     at_toy(kToyTable, 0, 25),          at_toy(kToyTable, 1, 25),
+          at_toy(0.2, 1, 30),      at_toy(edge + kClearOfBox, 1, 35), at_box(kClearOfBox, 1, 50),
+          at_box(kRelease, 1, 25), at_box(kRelease, 0, 12),           at_box(kClearOfBox, 0, 20)};
 }
 
 }  // namespace physpring

@@ -10,8 +10,6 @@
 namespace physpring {
 namespace {
 
-constexpr double kPrecision = 0.25;  // of the prior, as Levenberg-Marquardt has it
-
 // The values of all effects of a system, one after the other.
 Eigen::VectorXd ValuesOf(const SpringMassSystem& system) {
   Eigen::VectorXd values(0);
@@ -41,7 +39,7 @@ std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const Effe
   });
   const double variance = std::max(1e-300, r->squaredNorm() / static_cast<double>(r->size()));
   Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
-  normal.diagonal().array() += kPrecision;
+  normal.diagonal().array() += kDiagnosisPrecision;
   const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
 
   const Eigen::VectorXd values = ValuesOf(problem.model().Apply(fit.x));

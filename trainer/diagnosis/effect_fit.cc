@@ -18,8 +18,7 @@ namespace {
 constexpr double kTrustedScale = 0.05;          // of common factors that hardly move
 constexpr double kSoftest = 2, kStiffest = 64;  // start systems tried, in sub-steps a frame
 constexpr int kSpringConjugateGradients = 20;
-// Of an effect's parameters beside the springs' own (fit_model.h), as Levenberg-Marquardt has it.
-constexpr double kEffectPrecision = 0.25, kEffectScale = 30;
+constexpr double kEffectScale = 30;  // of an effect's parameters beside the springs' own
 
 // Of single springs, first under an observer with this gain.
 constexpr double kFollowedGain = 0.05;
@@ -71,7 +70,7 @@ GaussNewtonOptions Prior(const EffectModel& model) {
     values->conservativeResize(model.size());
     values->tail(model.size() - own).setConstant(value);
   };
-  append(kEffectPrecision, &options.precision);
+  append(kDiagnosisPrecision, &options.precision);
   append(kEffectScale, &options.scale);
   return options;
 }

@@ -10,10 +10,14 @@
 
 #include <vector>
 
+#include "trainer/levenberg_marquardt.h"
 #include "trainer/parameters.h"
 #include "twin/effects/effect.h"
 
 namespace physpring {
+
+// Of the prior on what a diagnosis moves, the springs' own parts aside (fit_model.h).
+inline constexpr double kDiagnosisPrecision = LevenbergMarquardtOptions().precision;
 
 class EffectModel {
  public:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kTracedEffects = 6;  // that are refitted at most ...
 constexpr double kLeastScore = 0.05;       // ... if the trace gives them such a part of the best
-constexpr int kDraws = 1000;
+constexpr int kSimplestDraws = 1000;
 constexpr double kTraceShare = 0.3;  // of the work of a search
 constexpr char kWithoutEffect[] = " without any new effect";
 
@@ -143,7 +143,7 @@ std::size_t ChooseSimplest(const std::vector<EffectFit>& fits, int block, std::u
   for (std::size_t i = 0; i < fits.size(); ++i) {
     if (ParameterCount(fits[i]) >= ParameterCount(fits[chosen])) continue;
     const BootstrapResult worse =
-        BlockBootstrap(Difference(fits[i].held, fits[best].held), block, kDraws, seed);
+        BlockBootstrap(Difference(fits[i].held, fits[best].held), block, kSimplestDraws, seed);
     if (worse.mean <= worse.error) chosen = i;
   }
   return chosen;

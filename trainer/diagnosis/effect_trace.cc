@@ -11,9 +11,8 @@
 namespace physpring {
 namespace {
 
-constexpr double kGain = 0.1;        // of the observer
-constexpr std::size_t kStarts = 2;   // of an effect that are looked at closely
-constexpr double kPrecision = 0.25;  // of the prior, as Levenberg-Marquardt has it
+constexpr double kGain = 0.1;       // of the observer
+constexpr std::size_t kStarts = 2;  // of an effect that are looked at closely
 constexpr double kLongestStep = 1.5;
 
 struct Job {
@@ -98,8 +97,8 @@ class Tracer {
                   const Eigen::MatrixXd& j) const {
     const double variance = r_.squaredNorm() / static_cast<double>(r_.size());
     Eigen::MatrixXd normal = j.transpose() * j / variance;
-    normal.diagonal().array() += kPrecision;
-    const Eigen::VectorXd gradient = j.transpose() * at / variance + kPrecision * x;
+    normal.diagonal().array() += kDiagnosisPrecision;
+    const Eigen::VectorXd gradient = j.transpose() * at / variance + kDiagnosisPrecision * x;
     double least = at.squaredNorm();
     for (double damping : {1e-3, 3e-2, 1.0, 30.0}) {
       Eigen::MatrixXd damped = normal;

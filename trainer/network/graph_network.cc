@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "trainer/logistic.h"
+
 namespace physpring {
 namespace {
 
@@ -92,13 +94,6 @@ std::vector<int> WithControllers(const Assignment& assignment, int controllers) 
             CountClusters(assignment));
   return rows;
 }
-
-double Logit(double value, double top) {
-  const double p = std::clamp(value / top, 1e-3, 1 - 1e-3);
-  return std::log(p / (1 - p));
-}
-
-double Sigmoid(double x, double top) { return top / (1 + std::exp(-x)); }
 
 }  // namespace
 

@@ -17,7 +17,7 @@ namespace physpring {
 namespace {
 
 constexpr int kIterations = 40;
-constexpr int kDraws = 6;  // an iteration
+constexpr int kTopologyDraws = 6;  // an iteration
 constexpr double kHottest = 1, kColdest = 0.1;
 constexpr std::size_t kCandidates = 3;
 constexpr int kMostRecordings = 4;
@@ -80,7 +80,7 @@ double TopologyFit::Temperature() const {
 Eigen::VectorXd TopologyFit::Draw(const Eigen::VectorXd& distance, double temperature) {
   const SpringMassSystem& system = twin_.levels.back().system;
   std::mt19937_64 random(options_.seed * 1000003 + 1009 * twin_.levels.size() + iteration_);
-  const int draws = temperature == 0 ? 1 : kDraws;
+  const int draws = temperature == 0 ? 1 : kTopologyDraws;
   std::vector<Choice> choices;
   for (int draw = 0; draw < draws; ++draw) {
     choices.push_back(ChooseClusters(system, DrawScores(distance, temperature, &random), nodes_));

@@ -8,12 +8,12 @@
 namespace physpring {
 namespace {
 
-constexpr int kKnots = 4;
+constexpr int kMassKnots = 4;
 
 // 1 + f of each node.
 Eigen::VectorXd Field(const SpringMassSystem& system, const Eigen::VectorXd& values) {
-  const Eigen::MatrixXd knots = KnotWeights(BodyCoordinate(system), kKnots);
-  return (knots * values.tail(kKnots)).head(system.node_count()).array() + 1;
+  const Eigen::MatrixXd knots = KnotWeights(BodyCoordinate(system), kMassKnots);
+  return (knots * values.tail(kMassKnots)).head(system.node_count()).array() + 1;
 }
 
 class MassDistribution : public Effect {
@@ -24,14 +24,14 @@ class MassDistribution : public Effect {
             {"place_x_m", -100, 100, 0.05},
             {"place_y_m", -100, 100, 0.05},
             {"place_z_m", -100, 100, 0.05},
-            {"relative_density_change", -0.9, 10, 0.3, kKnots}};
+            {"relative_density_change", -0.9, 10, 0.3, kMassKnots}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const override {
     constexpr int kPlaces = 10;
     std::vector<Eigen::VectorXd> starts;
     for (int node : SpreadNodes(system, kPlaces)) {
       for (double part : {0.1, 0.5}) {
-        Eigen::VectorXd start = Eigen::VectorXd::Zero(4 + kKnots);
+        Eigen::VectorXd start = Eigen::VectorXd::Zero(4 + kMassKnots);
         start[0] = part * system.mass.sum();
         start.segment<3>(1) = system.position.col(node);
         starts.push_back(start);
@@ -42,7 +42,7 @@ class MassDistribution : public Effect {
 
   void Change(const Eigen::VectorXd& values, Setting* setting) const override {
     SpringMassSystem& system = setting->system;
-    if (!values.tail(kKnots).isZero()) {
+    if (!values.tail(kMassKnots).isZero()) {
       const double total = system.mass.sum();
       const Eigen::VectorXd weighted = system.mass.cwiseProduct(Field(system, values));
       system.mass = total / weighted.sum() * weighted;
@@ -67,8 +67,8 @@ class MassDistribution : public Effect {
     gradient->mass = y_bar.cwiseProduct(field);
     gradient->mass.array() += mean;  // by M
     const Eigen::MatrixXd knots =
-        KnotWeights(BodyCoordinate(system).head(system.node_count()), kKnots);
-    values_bar->tail(kKnots) += knots.transpose() * y_bar.cwiseProduct(system.mass);
+        KnotWeights(BodyCoordinate(system).head(system.node_count()), kMassKnots);
+    values_bar->tail(kMassKnots) += knots.transpose() * y_bar.cwiseProduct(system.mass);
   }
 
   EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {

@@ -13,7 +13,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kKnots = 8;
+constexpr int kBendKnots = 8;
 constexpr double kVertical = 1e-6;  // sine of the angle between tangent and the vertical
 
 class RestBendForce : public BendEffectForce {
@@ -25,8 +25,8 @@ class RestBendForce : public BendEffectForce {
     for (Eigen::Index i = 0; i < at.size(); ++i) {
       at[i] = along[triples()[static_cast<std::size_t>(i)].b];
     }
-    knots_ = KnotWeights(at, kKnots);
-    moments_ = knots_ * values.reshaped(kKnots, 2);
+    knots_ = KnotWeights(at, kBendKnots);
+    moments_ = knots_ * values.reshaped(kBendKnots, 2);
   }
 
  protected:
@@ -44,7 +44,7 @@ class RestBendForce : public BendEffectForce {
     if (across.norm() < kVertical) return;
     const Vector side = across.normalized();
     const double m_up = moments_(triple, 0), m_side = moments_(triple, 1);
-    values_bar->reshaped(kKnots, 2).noalias() -=
+    values_bar->reshaped(kBendKnots, 2).noalias() -=
         knots_.row(triple).transpose() *
         Eigen::RowVector2d(moment_bar.dot(s.cross(side)), moment_bar.dot(side));
     const Vector side_bar = -m_side * moment_bar - m_up * moment_bar.cross(s);
@@ -64,10 +64,11 @@ class RestBend : public Effect {
   std::string name() const override { return "rest_bend"; }
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"moment_up_n_m", -10, 10, 1e-3, kKnots}, {"moment_side_n_m", -10, 10, 1e-3, kKnots}};
+    return {{"moment_up_n_m", -10, 10, 1e-3, kBendKnots},
+            {"moment_side_n_m", -10, 10, 1e-3, kBendKnots}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(2 * kKnots)};
+    return {Eigen::VectorXd::Zero(2 * kBendKnots)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

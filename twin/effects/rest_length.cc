@@ -7,7 +7,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kKnots = 5;
+constexpr int kLengthKnots = 5;
 
 // Row e: the weights of the knots in the field at spring e.
 Eigen::MatrixXd SpringKnots(const SpringMassSystem& system) {
@@ -16,17 +16,17 @@ Eigen::MatrixXd SpringKnots(const SpringMassSystem& system) {
   for (int e = 0; e < system.spring_count(); ++e) {
     middle[e] = (along[system.springs[e][0]] + along[system.springs[e][1]]) / 2;
   }
-  return KnotWeights(middle, kKnots);
+  return KnotWeights(middle, kLengthKnots);
 }
 
 class RestLength : public Effect {
  public:
   std::string name() const override { return "rest_length"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"strain", -0.8, 4, 0.03, kKnots}};
+    return {{"strain", -0.8, 4, 0.03, kLengthKnots}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(kKnots)};
+    return {Eigen::VectorXd::Zero(kLengthKnots)};
   }
 
   void Change(const Eigen::VectorXd& values, Setting* setting) const override {

@@ -10,12 +10,12 @@
 namespace physpring {
 namespace {
 
-constexpr int kKnots = 12;
+constexpr int kForceKnots = 12;
 
 class UniformForceForce : public EffectForce {
  public:
   UniformForceForce(const SpringMassSystem& system, const Eigen::VectorXd& values)
-      : interval_(values[0]), course_(values.tail(3 * kKnots).reshaped(kKnots, 3)) {
+      : interval_(values[0]), course_(values.tail(3 * kForceKnots).reshaped(kForceKnots, 3)) {
     mass_ = system.mass;
   }
 
@@ -33,7 +33,7 @@ class UniformForceForce : public EffectForce {
     gradient->parameters->mass +=
         (share_bar.array() - share_bar.dot(mass_) / total).matrix() / total;
     const Eigen::Vector3d bar = force_bar.leftCols(mass_.size()) * mass_ / total;
-    auto course_bar = gradient->values.tail(3 * kKnots).reshaped(kKnots, 3);
+    auto course_bar = gradient->values.tail(3 * kForceKnots).reshaped(kForceKnots, 3);
     course_bar.row(at.knot) += (1 - at.fraction) * bar.transpose();
     course_bar.row(at.knot + 1) += at.fraction * bar.transpose();
     gradient->values[0] +=
@@ -49,7 +49,7 @@ class UniformForceForce : public EffectForce {
   Course At(double time) const {
     const double place = interval_ > 0 ? time / interval_ : 0;
     Course at;
-    at.knot = std::min(static_cast<int>(place), kKnots - 2);
+    at.knot = std::min(static_cast<int>(place), kForceKnots - 2);
     at.fraction = std::min(1.0, place - at.knot);
     at.interval_slope = at.fraction < 1 && interval_ > 0 ? -place / interval_ : 0;
     at.force =
@@ -68,12 +68,12 @@ class UniformForce : public Effect {
   std::string name() const override { return "uniform_force"; }
   std::vector<EffectParameter> parameters() const override {
     return {{"interval_s", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
-            {"force_x_n", -1e3, 1e3, 0.05, kKnots},
-            {"force_y_n", -1e3, 1e3, 0.05, kKnots},
-            {"force_z_n", -1e3, 1e3, 0.05, kKnots}};
+            {"force_x_n", -1e3, 1e3, 0.05, kForceKnots},
+            {"force_y_n", -1e3, 1e3, 0.05, kForceKnots},
+            {"force_z_n", -1e3, 1e3, 0.05, kForceKnots}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    Eigen::VectorXd start = Eigen::VectorXd::Zero(1 + 3 * kKnots);
+    Eigen::VectorXd start = Eigen::VectorXd::Zero(1 + 3 * kForceKnots);
     start[0] = 0.25;
     return {start};
   }
