@@ -9,7 +9,7 @@
 namespace physpring {
 namespace {
 
-void Run() {
+void PrintVersions() {
   int failures = 0;
   for (const Finding& finding : InspectInstallation()) {
     fmt::print("{:<10} {}\n", finding.subject, finding.found);
@@ -25,7 +25,7 @@ void Run() {
 void AddDoctorCommand(CLI::App& app) {
   app.add_subcommand("doctor",
                      "Prints versions, the MuJoCo in use, its plugins, OpenGL and the CPU.")
-      ->callback(Run);
+      ->callback(PrintVersions);
 }
 
 }  // namespace physpring

@@ -12,7 +12,7 @@
 namespace physpring {
 
 // A count, as an extent of an array.
-inline std::size_t Extent(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
+inline std::size_t ExtentOf(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
 
 // One array, C order, little endian.
 struct NpzArray {

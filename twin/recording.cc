@@ -183,17 +183,17 @@ Recording ParseRecording(const Npz& arrays, const std::string& path) {
 NpzArray StoreFrames(const std::vector<Points>& frames) {
   const Eigen::Index columns = frames.empty() ? 0 : frames[0].cols();
   std::vector<double> values;
-  values.reserve(frames.size() * Extent(3 * columns));
+  values.reserve(frames.size() * ExtentOf(3 * columns));
   for (const Points& frame : frames) {
     if (frame.cols() != columns) throw Error("frames differ in their number of points");
     values.insert(values.end(), frame.data(), frame.data() + frame.size());
   }
-  return NpzArray::Floats({frames.size(), Extent(columns), 3}, values.data());
+  return NpzArray::Floats({frames.size(), ExtentOf(columns), 3}, values.data());
 }
 
 // (columns, 3)
 NpzArray StorePositions(const Points& positions) {
-  return NpzArray::Floats({Extent(positions.cols()), 3}, positions.data());
+  return NpzArray::Floats({ExtentOf(positions.cols()), 3}, positions.data());
 }
 
 Npz StoreRecording(const Recording& recording) {
@@ -211,7 +211,7 @@ Npz StoreRecording(const Recording& recording) {
   if (recording.rest_given) arrays["rest"] = StorePositions(recording.rest);
   if (!recording.velocity.isZero(0)) arrays["velocity"] = StorePositions(recording.velocity);
   if (recording.order.size() > 0) {
-    arrays["order"] = NpzArray::Doubles({Extent(recording.order.size())}, recording.order.data());
+    arrays["order"] = NpzArray::Doubles({ExtentOf(recording.order.size())}, recording.order.data());
   }
   if (!recording.surface.empty()) arrays["surface"] = StoreFrames(recording.surface);
   if (!recording.track.empty()) arrays["track"] = StoreFrames(recording.track);

@@ -50,13 +50,13 @@ void VisitVectors(Level& level, Visitor visit) {
 std::string LevelPrefix(std::size_t level) { return fmt::format("level{}/", level); }
 
 NpzArray StoreVector(const Eigen::VectorXd& values) {
-  return NpzArray::Doubles({Extent(values.size())}, values.data());
+  return NpzArray::Doubles({ExtentOf(values.size())}, values.data());
 }
 
 void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) {
   const SpringMassSystem& system = level.system;
   arrays[prefix + "position"] =
-      NpzArray::Doubles({Extent(system.position.cols()), 3}, system.position.data());
+      NpzArray::Doubles({ExtentOf(system.position.cols()), 3}, system.position.data());
   std::vector<int> ends;
   for (const auto& [a, b] : system.springs) ends.insert(ends.end(), {a, b});
   arrays[prefix + "springs"] = NpzArray::Ints({system.springs.size(), 2}, ends.data());
@@ -195,12 +195,12 @@ void ReadShape(NpzFields* fields, const std::string& prefix, int controllers,
   const std::string position = prefix + "position";
   system->position = fields->Positions(position, "nodes+controllers");
   const std::size_t count = fields->Extent("nodes+controllers");
-  if (count <= Extent(controllers)) {
+  if (count <= ExtentOf(controllers)) {
     fields->Fail(position, fmt::format("holds {} places, {} of them controllers, expected a node "
                                        "or more",
                                        count, controllers));
   }
-  fields->SetExtent("nodes", count - Extent(controllers));
+  fields->SetExtent("nodes", count - ExtentOf(controllers));
   system->controllers = controllers;
   const std::vector<int> ends = fields->Ints(prefix + "springs", {"springs", "2"});
   for (std::size_t i = 0; i < ends.size(); i += 2) {
@@ -267,7 +267,7 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   twin.fps = fields.Scalar("fps");
   if (twin.fps <= 0) fields.Fail("fps", fmt::format("holds {}, expected more than 0", twin.fps));
   twin.gravity = fields.Vector("gravity", "3");
-  fields.SetExtent("nodes+controllers", Extent(twin.levels[0].system.position.cols()));
+  fields.SetExtent("nodes+controllers", ExtentOf(twin.levels[0].system.position.cols()));
   if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
   SpreadOrder(&twin);
 
