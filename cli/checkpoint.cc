@@ -8,6 +8,7 @@
 
 #include "cli/output_files.h"
 #include "twin/cone_name.h"
+#include "twin/effects/effect_json.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -66,6 +67,7 @@ std::string OptionsJson(const TrainOptions& options, const std::string& from) {
     json["features"] = FeaturesName(options.network.features);
   }
   if (!from.empty()) json["from"] = from;
+  if (!options.effects.empty()) json["effects"] = Json::parse(EffectsToJson(options.effects));
   json["neighbours"] = options.neighbours.empty() ? Json("auto") : Json(options.neighbours);
   json["epochs"] = NumberOrAuto(options.epochs);
   json["substeps"] = NumberOrAuto(options.substeps);
@@ -137,8 +139,10 @@ void Checkpoint::ExpectSameTraining(const Twin& twin) const {
                     path_, what, in_file, now));
   };
   const Json in_file = Json::parse(twin.options_json), now = Json::parse(labels_.options_json);
-  for (const auto& [key, value] : now.items()) {
-    expect_same(key, in_file.value(key, Json()).dump(), value.dump());
+  Json keys = in_file;  // and those that are new
+  keys.update(now);
+  for (const auto& [key, value] : keys.items()) {
+    expect_same(key, in_file.value(key, Json()).dump(), now.value(key, Json()).dump());
   }
   expect_same("seed", twin.seed, labels_.seed);
   expect_same("number of recordings", twin.trained_on.size(), labels_.trained_on.size());

@@ -34,7 +34,7 @@ namespace {
 
 struct TrainArguments {
   std::vector<std::string> recordings;
-  std::string output, log, from;
+  std::string output, log, from, effects;
   std::string reduction = "learned", features = "learned";
   std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
   std::string cone = "auto";
@@ -78,6 +78,9 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
          "needs one ratio for each level but level 0");
   expect(options.reduction == Reduction::kLearned || arguments.features == "learned", "--features",
          "is of --reduction learned");
+  expect(!two_stage || arguments.effects.empty(), "--effects", "is of --method full");
+  expect(arguments.from.empty() || arguments.effects.empty(), "--effects",
+         "and --from exclude each other: level 0 comes with its effects");
   expect(two_stage || !options.self_collision, "--self-collision", "is of --method two-stage");
   return options;
 }
@@ -120,6 +123,13 @@ Twin ReadLevel0(const std::string& path, const FitData& data) {
   return twin;
 }
 
+// Those of a twin that was diagnosed.
+std::vector<EffectValues> ReadEffects(const std::string& path) {
+  std::vector<EffectValues> effects = ReadTwin(path).levels[0].system.effects;
+  if (effects.empty()) throw Error(fmt::format("{}: this twin has no effects", path));
+  return effects;
+}
+
 void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
                  const std::string& status, double seconds) {
   for (std::size_t i = 0; i < run.twin.levels.size(); ++i) {
@@ -141,15 +151,17 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
 void ExpectWritable(const TrainArguments& arguments, const std::vector<RecordingEntry>& entries) {
   std::vector<std::string> inputs;
   if (!arguments.from.empty()) inputs.push_back(arguments.from);
+  if (!arguments.effects.empty()) inputs.push_back(arguments.effects);
   for (const RecordingEntry& entry : entries) inputs.push_back(entry.path);
   ExpectOutputs({arguments.output, arguments.log}, inputs);
 }
 
 void Run(const TrainArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const TrainOptions options = OptionsOf(arguments);
+  TrainOptions options = OptionsOf(arguments);
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kFit);
   const FitData data = ReadFitData(entries);
+  if (!arguments.effects.empty()) options.effects = ReadEffects(arguments.effects);
   std::optional<Twin> dense;
   if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data);
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
@@ -225,6 +237,11 @@ void AddFitOptions(CLI::App* command, TrainArguments* arguments) {
   AddChoice(command, "--method", &arguments->method, {"full", "two-stage"},
             "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
   AddHierarchyOptions(command, arguments);
+  command
+      ->add_option("--effects", arguments->effects,
+                   "give the twin the effects of this one, with their values (full); `physpring "
+                   "diagnose` finds them")
+      ->type_name("TWIN.npz");
   command
       ->add_option("--neighbours", options.neighbours,
                    "springs of a particle; of several the best on held-back frames (full)")

@@ -77,7 +77,9 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
     if (!rod && radius < 1.02 * last_radius) continue;  // the same shells again
     last_radius = radius;
     for (FrictionCone cone : cones) {
-      for (bool velocity : velocities) candidates.push_back({count, radius, velocity, cone});
+      for (bool velocity : velocities) {
+        candidates.push_back({count, radius, velocity, cone, options.effects});
+      }
     }
   }
   return candidates;
@@ -96,6 +98,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
   SpringMassSystem system = MakeStartSystem(recording, topology);
   system.contact.cone = candidate.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
+  system.effects = candidate.effects;
   return system;
 }
 

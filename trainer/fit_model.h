@@ -15,13 +15,14 @@
 
 namespace physpring {
 
-// One model: which particles are joined, whether dashpots feel the controllers' velocity, and the
-// cone of friction.
+// One model: which particles are joined, whether dashpots feel the controllers' velocity, the cone
+// of friction, and effects that are known.
 struct Candidate {
   int neighbours = 0;  // of an inner particle, about
   double radius = 0;   // m, that gives them (not used along rods)
   bool controller_velocity = true;
   FrictionCone cone = FrictionCone::kElliptic;
+  std::vector<EffectValues> effects = {};
 
   std::string Label() const;
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/effects/effect_values.h"
 #include "twin/friction_cone.h"
 
 namespace physpring {
@@ -28,6 +29,7 @@ struct TrainOptions {
   // Of friction on the ground; empty: whatever predicts better (full), elliptic (two-stage).
   std::optional<FrictionCone> cone;
   bool self_collision = false;  // particles collide with each other (two-stage only)
+  std::vector<EffectValues> effects;  // that the twin has, with these values (full only)
   int threads = 1;
   std::uint64_t seed = 0;
 

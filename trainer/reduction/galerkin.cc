@@ -136,6 +136,7 @@ Projection Project(const SpringMassSystem& fine, const Assignment& assignment,
   projection.system.controllers = fine.controllers;
   projection.system.drag = fine.drag;
   projection.system.contact = fine.contact;
+  projection.system.effects = fine.effects;
   ProjectNodes(fine, assignment, sizes, up, &projection.system);
   ProjectSprings(fine, cluster, sizes, &projection);
   // particles collide from as far as they lie apart
