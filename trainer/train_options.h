@@ -28,7 +28,7 @@ struct TrainOptions {
   std::optional<bool> controller_velocity;
   // Of friction on the ground; empty: whatever predicts better (full), elliptic (two-stage).
   std::optional<FrictionCone> cone;
-  bool self_collision = false;  // particles collide with each other (two-stage only)
+  bool self_collision = false;        // particles collide with each other (two-stage only)
   std::vector<EffectValues> effects;  // that the twin has, with these values (full only)
   int threads = 1;
   std::uint64_t seed = 0;

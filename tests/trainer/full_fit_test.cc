@@ -25,7 +25,7 @@ TrainOptions Options() {
 }
 
 // A rope that moves as a system of the fit's kind does, its springs unequal.
-FitData Swung(int recordings = 1) {
+FitData Swung(int recordings = 1, const std::vector<EffectValues>& effects = {}) {
   FitData data;
   for (int i = 0; i < recordings; ++i) {
     Recording recording = SwungRope(kParticles, kFrames - i);
@@ -33,6 +33,7 @@ FitData Swung(int recordings = 1) {
         MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6});
     ScaleToSubsteps(1 / recording.fps, 12, 0.7, &system);
     for (int e = 0; e < system.spring_count(); ++e) system.stiffness[e] *= 0.7 + 0.1 * (e % 4);
+    system.effects = effects;
     MoveAs(system, true, &recording);
     data.recordings.push_back(std::move(recording));
     data.continuous_recording.push_back(i);
@@ -76,6 +77,22 @@ TEST(FullFit, ExplainsWhatASystemOfItsKindDid) {
   EXPECT_EQ(twin.points, kParticles);
   EXPECT_EQ(twin.levels[0].system.controllers, 1);
   EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
+}
+
+TEST(FullFit, KeepsTheEffectsThatItIsGiven) {
+  const std::vector<EffectValues> wind = {{"air_drag", Eigen::Vector4d(0.02, 3, 0, 0)}};
+  const FitData data = Swung(1, wind);
+  TrainOptions options = Options();
+  const auto error = [&] {
+    FullFit fit(data, options);
+    RunToTheEnd(&fit);
+    const Twin twin = fit.Result();
+    EXPECT_EQ(twin.levels[0].system.effects.size(), options.effects.size());
+    return TrackError(twin, data.recordings[0]);
+  };
+  const double without = error();
+  options.effects = wind;
+  EXPECT_LT(error(), 0.5 * without);
 }
 
 TEST(FullFit, ProgressNeverFalls) {

@@ -10,6 +10,7 @@
 
 #include "trainer/diagnosis/effect_search.h"
 #include "trainer/diagnosis/noise_floor.h"
+#include "trainer/diagnosis/trained_fit.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
 #include "twin/predict.h"
@@ -32,9 +33,9 @@ constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.
 constexpr double kSimplyExplained = 0.8;
 
 // Shares of the work, as the journal tells it: refits without an effect, then rounds, and of a
-// round the search.
+// round the search, with the springs' refit, and the training.
 constexpr WorkShare kCommonShare{0, 0.2}, kSpringShare{0.2, 0.3};
-constexpr double kSearchPart = 0.8;
+constexpr double kSearchPart = 0.5, kTrainingPart = 0.6;
 
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
@@ -130,7 +131,7 @@ class Loop {
 
   // Single springs, too, unless those of the twin were better.
   void FitSprings() {
-    if (!trained_on_ || accepted_.as_trained) return;
+    if (!trained_on_ || accepted_.trained) return;
     accepted_ = WithSprings(accepted_, kSpringShare, "refitting springs without any new effect");
   }
 
@@ -146,7 +147,7 @@ class Loop {
     const std::size_t best = ChooseSimplest(search.fits, block_, options_.seed);
     if (round == 0) candidates_ = RankEffects(search, common_, best, block_, options_.seed);
     const EffectFit chosen = search.fits[best];
-    EffectFit with_springs = WithSprings(chosen, stage.Part(kSearchPart, 1),
+    EffectFit with_springs = WithSprings(chosen, stage.Part(kSearchPart, kTrainingPart),
                                          "refitting springs with " + chosen.start.back().name);
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
@@ -159,6 +160,11 @@ class Loop {
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
+    if (trained_on_) {
+      if (const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_)) {
+        Offer(*anew);
+      }
+    }
     return true;
   }
 
@@ -198,23 +204,6 @@ class Loop {
   std::vector<EffectCandidate> candidates_;
 };
 
-// The twin as it was trained, nothing if its motion diverges. `like`: a fit of the same recordings.
-std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitRecording>& splits,
-                                   const EffectFit& like) {
-  EffectFit fit = like;
-  fit.as_trained = true;
-  fit.system = twin.levels[0].system;
-  try {
-    for (std::size_t i = 0; i < splits.size(); ++i) {
-      fit.predicted[i] = Predict(twin, 0, *splits[i].recording, {});
-    }
-  } catch (const Error&) {
-    return {};
-  }
-  ScorePrediction(splits, &fit);
-  return fit;
-}
-
 // Whether training has seen none of the frames that are held out.
 bool HasNotSeenHeldOut(const Twin& twin, const std::vector<Recording>& recordings,
                        const std::vector<Recording>& held_out) {
@@ -233,8 +222,8 @@ std::ptrdiff_t EffectValueCount(const std::vector<EffectValues>& effects) {
 }
 
 // The twin with the fit's system at level 0, and the new effects at all levels.
-Twin TwinWith(Twin twin, const EffectFit& fit, bool controller_velocity,
-              const std::vector<EffectValues>& effects, const std::vector<Recording>& recordings) {
+Twin TwinWith(Twin twin, const EffectFit& fit, const std::vector<EffectValues>& effects,
+              const std::vector<Recording>& recordings) {
   twin.training_state.clear();
   for (TwinLevel& level : twin.levels) {
     level.system.effects.insert(level.system.effects.end(), effects.begin(), effects.end());
@@ -244,7 +233,7 @@ Twin TwinWith(Twin twin, const EffectFit& fit, bool controller_velocity,
   const double fps = recordings[0].fps;
   const int substeps = StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety);
   dense.substeps_per_second = static_cast<int>(std::ceil(substeps * fps));
-  twin.controller_velocity = controller_velocity;
+  twin.controller_velocity = fit.controller_velocity;
   for (const Recording& recording : recordings) {
     if (TrainedOnThis(twin, recording)) continue;
     twin.trained_on.push_back({recording.name, recording.hash, recording.train_frames});
@@ -297,9 +286,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   if (accepted.track.held > kUnexplained * result.noise_floor) {
     result.unexplained = FindUnexplained(splits, accepted, result.noise_floor);
   }
-  const bool velocity = accepted.as_trained ? twin.controller_velocity
-                                            : fitting.bodies()[accepted.body].controller_velocity;
-  result.twin = TwinWith(twin, accepted, velocity, result.effects, recordings);
+  result.twin = TwinWith(twin, accepted, result.effects, recordings);
   return result;
 }
 

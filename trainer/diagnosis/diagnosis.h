@@ -10,7 +10,8 @@
 //   5  choose   the one that is best on frames not fitted, or a simpler one that is as good; with
 //               its single springs fitted, too, it is accepted if it beats the refit without it
 //               by more than chance (paired block bootstrap) and by more than a small part
-//   6  repeat from 3, until nothing is accepted
+//   6  train    a twin that was trained on these recordings anew, with the effect
+//   7  repeat from 3, until nothing is accepted
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 

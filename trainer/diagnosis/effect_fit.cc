@@ -189,6 +189,7 @@ bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
   auto predicted = problem->Predict(x);
   if (!predicted) return false;
   fit->system = problem->model().Apply(x);
+  fit->controller_velocity = bodies_[fit->body].controller_velocity;
   fit->predicted = std::move(*predicted);
   ScorePrediction(recordings_, fit);
   return true;

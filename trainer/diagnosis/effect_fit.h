@@ -27,10 +27,11 @@ struct EffectFit {
   double misfit = std::numeric_limits<double>::infinity();  // mean of r^2, m^2, where last fitted
   double damping = 1e-2;
   bool converged = false;
-  bool as_trained = false;  // not fitted here: the twin as it came; then `body` says nothing
+  bool trained = false;  // the system comes from a training, not from `body`
 
   // From Judge and RefitSprings.
   SpringMassSystem system;
+  bool controller_velocity = true;  // whether dashpots feel it
   std::vector<std::vector<Points>> predicted;
   FrameTrack held;
   TrackPair track{};

@@ -11,6 +11,7 @@ namespace physpring {
 namespace {
 
 constexpr std::size_t kHashDigits = 16;
+constexpr char kFit[] = "fit/";  // then the hash, a slash, and an array of the fit's state
 
 }  // namespace
 
@@ -66,6 +67,18 @@ Eigen::VectorXd Journal::Get(const PieceKey& key, const std::function<Eigen::Vec
   return result;
 }
 
+void Journal::Finish(const PieceKey& key, const WorkShare& share, const std::string& status,
+                     Fitter* fitter) {
+  const std::string hash = key.Hash();
+  const auto begun = fits_.find(hash);
+  if (begun != fits_.end()) fitter->Load(begun->second);
+  do {
+    if (progress) progress(share.At(fitter->Progress()), status + ": " + fitter->Status());
+    fits_[hash] = fitter->Save();
+    if (kept) kept();
+  } while (fitter->Step());
+}
+
 StateArrays Journal::Save() const {
   std::string hashes;
   std::vector<int> sizes;
@@ -75,9 +88,13 @@ StateArrays Journal::Save() const {
     sizes.push_back(static_cast<int>(result.size()));
     values.insert(values.end(), result.begin(), result.end());
   }
-  return {{"hashes", NpzArray::Text(hashes)},
-          {"sizes", NpzArray::Ints({sizes.size()}, sizes.data())},
-          {"values", NpzArray::Doubles({values.size()}, values.data())}};
+  StateArrays state{{"hashes", NpzArray::Text(hashes)},
+                    {"sizes", NpzArray::Ints({sizes.size()}, sizes.data())},
+                    {"values", NpzArray::Doubles({values.size()}, values.data())}};
+  for (const auto& [hash, fit] : fits_) {
+    for (const auto& [name, values_of_fit] : fit) state[kFit + hash + "/" + name] = values_of_fit;
+  }
+  return state;
 }
 
 void Journal::Load(const StateArrays& state) {
@@ -99,6 +116,11 @@ void Journal::Load(const StateArrays& state) {
     results_[hashes.substr(kHashDigits * i, kHashDigits)] =
         Eigen::Map<const Eigen::VectorXd>(values.data() + first, sizes[i]);
     first += static_cast<std::size_t>(sizes[i]);
+  }
+  constexpr std::size_t kHash = sizeof(kFit) - 1, kName = kHash + kHashDigits + 1;
+  for (const auto& [name, values_of_fit] : state) {
+    if (!name.starts_with(kFit) || name.size() <= kName) continue;
+    fits_[name.substr(kHash, kHashDigits)][name.substr(kName)] = values_of_fit;
   }
 }
 

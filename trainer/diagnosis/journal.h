@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a diagnosis has worked out so far, in pieces of seconds: steps of fits, scores of traces.
+// What a diagnosis has worked out so far, in pieces of seconds: steps of fits, scores of traces;
+// and how far its trainings are.
 // All pieces are deterministic, so each is kept under a hash of everything that it depends on; a
 // diagnosis that was stopped anywhere, and begins again with what it had, takes the same way to the
 // same bits and only works on the pieces that are missing. It also knows how far the work is.
@@ -13,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "trainer/fitter.h"
 #include "trainer/state_arrays.h"
 #include "twin/effects/effect_values.h"
 
@@ -49,6 +51,11 @@ class Journal {
   // The result under `key`, or that of `work`, which is then kept. From any thread.
   Eigen::VectorXd Get(const PieceKey& key, const std::function<Eigen::VectorXd()>& work);
 
+  // Takes a fit to its end, from the last of its steps that is kept under `key`: this share of all
+  // work. Not from several threads.
+  void Finish(const PieceKey& key, const WorkShare& share, const std::string& status,
+              Fitter* fitter);
+
   // The results, and back. Load throws Error if the arrays are none of a journal. Not while pieces
   // are worked on, but in `kept`.
   StateArrays Save() const;
@@ -62,6 +69,7 @@ class Journal {
  private:
   std::mutex mutex_;
   std::map<std::string, Eigen::VectorXd> results_;  // by hash
+  std::map<std::string, StateArrays> fits_;         // after their last steps, by hash
   WorkShare share_;
   int pieces_ = 1, done_ = 0;
   std::string status_;

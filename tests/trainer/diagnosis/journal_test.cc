@@ -49,6 +49,43 @@ TEST(Journal, KeysTellApartWhatPiecesDependOn) {
   EXPECT_EQ(hash(one, 2.0), hash(one, 2.0));
 }
 
+// Counts to 3.
+class Counting : public Fitter {
+ public:
+  bool Step() override { return count_ < 3 && (++count_, ++steps, true); }
+  double Progress() const override { return count_ / 3.0; }
+  std::string Status() const override { return "counting"; }
+  StateArrays Save() const override { return {{"train/count", NpzArray::Ints({}, &count_)}}; }
+  void Load(const StateArrays& state) override { count_ = state.at("train/count").ToInts()[0]; }
+  Twin Result() const override { return {}; }
+
+  int steps = 0;
+
+ private:
+  int count_ = 0;
+};
+
+TEST(Journal, TakesAFitToItsEndFromWhereItWas) {
+  Journal journal;
+  StateArrays after_two;
+  std::vector<double> shares;
+  journal.progress = [&](double share, const std::string&) { shares.push_back(share); };
+  journal.kept = [&] {
+    if (shares.size() == 3) after_two = journal.Save();
+  };
+  Counting whole, rest, other;
+  journal.Finish(PieceKey("a"), {0.4, 1}, "testing", &whole);
+  EXPECT_EQ(whole.steps, 3);
+  ASSERT_EQ(shares.size(), 4u);
+  EXPECT_DOUBLE_EQ(shares[2], 0.8);
+  Journal resumed;
+  resumed.Load(after_two);
+  resumed.Finish(PieceKey("a"), {0, 1}, "testing", &rest);
+  EXPECT_EQ(rest.steps, 1);
+  resumed.Finish(PieceKey("b"), {0, 1}, "testing", &other);
+  EXPECT_EQ(other.steps, 3);
+}
+
 TEST(Journal, TellsTheShareBeforeMissingPieces) {
   Journal journal;
   std::vector<double> shares;
