@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/trained_fit.h"
+
+#include "trainer/full_fit.h"
+#include "twin/error.h"
+#include "twin/predict.h"
+
+namespace physpring {
+
+std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitRecording>& recordings,
+                                   const EffectFit& like) {
+  EffectFit fit = like;
+  fit.trained = true;
+  fit.controller_velocity = twin.controller_velocity;
+  fit.system = twin.levels[0].system;
+  try {
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      fit.predicted[i] = Predict(twin, 0, *recordings[i].recording, {});
+    }
+  } catch (const Error&) {
+    return {};
+  }
+  ScorePrediction(recordings, &fit);
+  return fit;
+}
+
+std::optional<EffectFit> TrainAnew(const EffectFitting& fitting, const WorkShare& share,
+                                   const EffectFit& like) {
+  FitData data;
+  for (const SplitRecording& split : fitting.recordings()) {
+    if (split.last(SplitRecording::Use::kFit) == 0) continue;
+    data.continuous_recording.push_back(static_cast<int>(data.recordings.size()));
+    data.recordings.push_back(OnlyFitFrames(split));
+  }
+  TrainOptions options;
+  options.effects = like.system.effects;
+  options.controller_velocity = like.controller_velocity;
+  options.cone = like.system.contact.cone;
+  options.threads = fitting.threads();
+  PieceKey key("training");
+  key.Add(options.effects).Add(like.controller_velocity ? 1 : 0);
+  try {
+    FullFit training(std::move(data), options);
+    fitting.journal().Finish(key, share, "training anew with " + options.effects.back().name,
+                             &training);
+    return AsTrained(training.Result(), fitting.recordings(), like);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace physpring
