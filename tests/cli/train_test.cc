@@ -13,6 +13,7 @@
 
 #include "tests/support/program.h"
 #include "tests/support/running_program.h"
+#include "tests/support/small_twin.h"
 #include "tests/support/swung_rope.h"
 #include "tests/support/temporary_folder.h"
 #include "trainer/phystwin_variables.h"
@@ -206,6 +207,23 @@ TEST_F(Train, ResumesOnlyWhatWasTrainedTheSameWay) {
   fails({"--method", "full"}, ": was trained with method \"two-stage\", not \"full\"");
   WriteRecording(MovingRope(8, 11), other_);
   fails({}, ": recording 2 was other with hash ");
+}
+
+TEST_F(Train, TakesEffectsFromADiagnosedTwin) {
+  const std::string diagnosed = folder_.File("diagnosed.twin.npz");
+  const Words words = Short("full") + Words{"--effects", diagnosed};
+  Twin other = SmallTwin(1);
+  WriteTwin(other, diagnosed);
+  EXPECT_TRUE(FailsWith(RunProgram(words), diagnosed + ": this twin has no effects"));
+  other.levels[0].system.effects = {{"gravity_direction", Eigen::Vector2d(0.1, 0)}};
+  WriteTwin(other, diagnosed);
+  ASSERT_EQ(RunProgram(words).status, 0);
+  const std::vector<EffectValues> effects = ReadTwin(twin_).levels[0].system.effects;
+  ASSERT_EQ(effects.size(), 1u);
+  EXPECT_EQ(effects[0].name, "gravity_direction");
+  EXPECT_EQ(effects[0].values, Eigen::VectorXd(Eigen::Vector2d(0.1, 0)));
+  const ProgramResult without = RunProgram(Short("full") + Words{"--resume"});
+  EXPECT_TRUE(FailsWith(without, ": was trained with effects [{\"name\"")) << without.errors;
 }
 
 TEST_F(Train, RefusesRecordingsOfDifferentObjects) {
