@@ -23,7 +23,6 @@ constexpr int kMostSpringRecordings = 12;
 constexpr int kFirstGain = 1;  // of kObserverGains: a Galerkin projection is not far off
 constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
 constexpr int kStepsPerGain = 4;
-constexpr int kPatience = 5;  // epochs without gain on held-back frames
 constexpr int kGaussNewtonSteps = 6;
 constexpr int kLevelConjugateGradients = 12;
 
@@ -31,20 +30,6 @@ constexpr int kLevelConjugateGradients = 12;
 int MostSubsteps(const TwinLevel& dense, double fps) {
   return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
-}
-
-void StoreAdam(const std::string& name, const Adam& adam, StateArrays* arrays) {
-  const std::string prefix = "train/level/" + name + "_adam";
-  (*arrays)[prefix + "/steps"] = StoreCounters({adam.steps});
-  (*arrays)[prefix + "/mean"] = StoreVector(adam.mean);
-  (*arrays)[prefix + "/mean_square"] = StoreVector(adam.mean_square);
-}
-
-void LoadAdam(const std::string& name, const StateArrays& arrays, Adam* adam) {
-  const std::string prefix = "level/" + name + "_adam";
-  adam->steps = LoadCounters(arrays, prefix + "/steps", 1)[0];
-  adam->mean = LoadVector(arrays, prefix + "/mean", adam->mean.size());
-  adam->mean_square = LoadVector(arrays, prefix + "/mean_square", adam->mean_square.size());
 }
 
 // Of points, from the mean square of their coordinates' residuals.
@@ -63,12 +48,11 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
       network_(network),
       gain_(kFirstGain),
       common_(Eigen::VectorXd::Zero(CommonParameters().size())),
-      weights_(weights),
-      contact_(Eigen::VectorXd::Zero(2)),
-      weights_adam_(weights.size()),
-      contact_adam_(2),
-      best_weights_(weights),
-      best_contact_(contact_) {}
+      corrections_(BeginCorrections(weights)) {}
+
+CorrectionsFit LevelFit::BeginCorrections(const Eigen::VectorXd& weights) const {
+  return {options_.network, data_.recordings[0].ground.has_value(), weights};
+}
 
 LiftedMotion::Options LevelFit::MotionOptions(int threads, double gain) const {
   LiftedMotion::Options motion;
@@ -101,9 +85,9 @@ SpringMassSystem LevelFit::NetworkBase(const Eigen::VectorXd& contact) const {
 
 // With the best corrections so far.
 SpringMassSystem LevelFit::CorrectedSystem() const {
-  SpringMassSystem base = NetworkBase(best_contact_);
+  SpringMassSystem base = NetworkBase(corrections_.best_contact());
   if (options_.network.epochs == 0) return base;
-  return LevelNetwork(network_, twin_, base, best_weights_).corrected();
+  return LevelNetwork(network_, twin_, base, corrections_.best_weights()).corrected();
 }
 
 void LevelFit::StepCommon() {
@@ -127,21 +111,12 @@ void LevelFit::StepCommon() {
   iteration_ = 0;
   damping_ = 1e-2;
   if (++gain_ <= kLastGain) return;
-  if (options_.network.epochs > 0) {
-    BeginNetwork();
-  } else {
+  if (options_.network.epochs == 0) {
     BeginSprings();
+    return;
   }
-}
-
-void LevelFit::BeginNetwork() {
   stage_ = Stage::kNetwork;
-  weights_ = best_weights_ = network_.WithoutCorrections(weights_);
-  iteration_ = best_iteration_ = 0;
-  best_score_ = std::numeric_limits<double>::infinity();
-  rate_ = 1;
-  weights_adam_ = Adam(weights_.size());
-  contact_adam_ = Adam(contact_.size());
+  corrections_ = BeginCorrections(network_.WithoutCorrections(corrections_.best_weights()));
 }
 
 void LevelFit::BeginSprings() {
@@ -170,60 +145,30 @@ double LevelFit::HeldBackError(const SpringMassSystem& system) const {
   return sum / static_cast<double>(episodes.size());
 }
 
-int LevelFit::UpdatesPerEpoch() const {
-  const bool contact = data_.recordings[0].ground.has_value();
-  return options_.network.updates + (contact ? options_.network.contact_updates : 0);
-}
-
-void LevelFit::Keep(double score) {
-  best_score_ = score;
-  best_weights_ = weights_;
-  best_contact_ = contact_;
-  best_iteration_ = iteration_;
-}
-
-void LevelFit::TurnBack() {
-  weights_ = best_weights_;
-  contact_ = best_contact_;
-}
-
 // One update of the network's weights, or of the contact's coefficients, by the loss of the fit
 // frames that are not held back.
 void LevelFit::StepNetwork() {
-  const LevelNetwork network(network_, twin_, NetworkBase(contact_), weights_);
+  const LevelNetwork network(network_, twin_, NetworkBase(corrections_.contact()),
+                             corrections_.weights());
   const SpringMassSystem& system = network.corrected();
   const double score = HeldBackError(system);
-  if (score < best_score_) Keep(score);
   status_ = fmt::format("level {}, network: {:.3f} mm on held-back frames", level_, 1e3 * score);
-  const int epoch = iteration_ / UpdatesPerEpoch();
-  const bool worse = iteration_ - best_iteration_ >= kPatience * UpdatesPerEpoch();
-  if (worse || epoch >= options_.network.epochs) {
-    TurnBack();
+  if (!corrections_.Judge(score)) {
     BeginSprings();
     return;
   }
-  const bool of_weights = iteration_ % UpdatesPerEpoch() < options_.network.updates;
-  ++iteration_;
   const LiftedMotion motion(twin_, level_, held_back_.FitEpisodes(),
                             MotionOptions(options_.threads));
   const std::optional<LiftedLoss> loss = ComputeLiftedLoss(motion, system);
-  if (!loss) {  // too far: back to the best weights, and on in shorter steps
-    TurnBack();
-    rate_ /= 4;
-    return;
+  if (!loss) {
+    corrections_.TurnBack();
+  } else if (corrections_.is_turn_of_weights()) {
+    corrections_.Update(network.Adjoint(loss->gradient));
+  } else {
+    Features springs_bar, system_bar;  // of the same logits
+    CorrectionsAdjoint(system, loss->gradient, &springs_bar, &system_bar);
+    corrections_.Update(system_bar.rightCols(2).transpose());
   }
-  const double slower = rate_ * std::pow(options_.network.decay, epoch);  // than at first
-  if (of_weights) {
-    const double rate = slower * options_.network.learning_rate;
-    weights_adam_.Step(network.Adjoint(loss->gradient),
-                       Eigen::VectorXd::Constant(weights_.size(), rate), &weights_);
-    return;
-  }
-  Features springs_bar, system_bar;  // of the same logits
-  CorrectionsAdjoint(system, loss->gradient, &springs_bar, &system_bar);
-  const double rate = slower * options_.network.contact_rate;
-  contact_adam_.Step(system_bar.rightCols(2).transpose(), Eigen::Vector2d::Constant(rate),
-                     &contact_);
 }
 
 void LevelFit::StepSprings() {
@@ -281,7 +226,7 @@ double LevelFit::Progress() const {
     case Stage::kCommon:
       return 0.2 * (gain_ - kFirstGain) / (kLastGain - kFirstGain + 1);
     case Stage::kNetwork:
-      return 0.2 + 0.2 * iteration_ / (options_.network.epochs * UpdatesPerEpoch());
+      return 0.2 + 0.2 * corrections_.Progress();
     case Stage::kSprings:
       return 0.4 + 0.6 * iteration_ / kGaussNewtonSteps;
     case Stage::kDone:
@@ -293,45 +238,25 @@ double LevelFit::Progress() const {
 bool LevelFit::can_be_judged() const { return stage_ != Stage::kCommon || gain_ == kLastGain; }
 
 StateArrays LevelFit::Save() const {
-  Eigen::VectorXd scalars(4);
-  scalars << damping_, mean_square_, best_score_, rate_;
   StateArrays arrays = {
-      {"train/level/counters",
-       StoreCounters({static_cast<int>(stage_), iteration_, best_iteration_, gain_})},
-      {"train/level/scalars", StoreVector(scalars)},
+      {"train/level/counters", StoreCounters({static_cast<int>(stage_), iteration_, gain_})},
+      {"train/level/scalars", StoreVector(Eigen::Vector2d(damping_, mean_square_))},
       {"train/level/common", StoreVector(common_)},
-      {"train/level/springs", StoreVector(springs_)},
-      {"train/level/weights", StoreVector(weights_)},
-      {"train/level/best_weights", StoreVector(best_weights_)},
-      {"train/level/contact", StoreVector(contact_)},
-      {"train/level/best_contact", StoreVector(best_contact_)}};
-  if (stage_ == Stage::kNetwork) {
-    StoreAdam("weights", weights_adam_, &arrays);
-    StoreAdam("contact", contact_adam_, &arrays);
-  }
+      {"train/level/springs", StoreVector(springs_)}};
+  corrections_.Save(stage_ == Stage::kNetwork, &arrays);
   return arrays;
 }
 
 void LevelFit::Load(const StateArrays& state) {
-  const std::vector<int> counters = LoadCounters(state, "level/counters", 4);
+  const std::vector<int> counters = LoadCounters(state, "level/counters", 3);
   stage_ = static_cast<Stage>(counters[0]);
   iteration_ = counters[1];
-  best_iteration_ = counters[2];
-  gain_ = counters[3];
-  const Eigen::VectorXd scalars = LoadVector(state, "level/scalars", 4);
+  gain_ = counters[2];
+  const Eigen::VectorXd scalars = LoadVector(state, "level/scalars", 2);
   damping_ = scalars[0];
   mean_square_ = scalars[1];
-  best_score_ = scalars[2];
-  rate_ = scalars[3];
   common_ = LoadVector(state, "level/common", common_.size());
-  weights_ = LoadVector(state, "level/weights", weights_.size());
-  best_weights_ = LoadVector(state, "level/best_weights", weights_.size());
-  contact_ = LoadVector(state, "level/contact", contact_.size());
-  best_contact_ = LoadVector(state, "level/best_contact", contact_.size());
-  if (stage_ == Stage::kNetwork) {
-    LoadAdam("weights", state, &weights_adam_);
-    LoadAdam("contact", state, &contact_adam_);
-  }
+  corrections_.Load(stage_ == Stage::kNetwork, state);
   if (stage_ == Stage::kSprings || stage_ == Stage::kDone) {
     springs_ = LoadVector(state, "level/springs", SpringParameters().size());
   }

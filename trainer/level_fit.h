@@ -3,20 +3,18 @@
 // Galerkin projection, to the measured points through the lift, in three stages:
 //   common   the same few factors for all springs (parameters.h), by Levenberg-Marquardt, under an
 //            observer whose gain falls to 0 (observer.h)
-//   network  corrections by the graph network, by Adam: epochs of updates of its weights, each
-//            followed by updates of the contact's coefficients alone (the paper's K_model and
-//            K_col); what predicts held-back frames best counts
+//   network  corrections by the graph network and of the contact (network/corrections_fit.h)
 //   springs  every spring's own stiffness, dashpot and rest length, by Gauss-Newton
 #ifndef PHYSPRING_TRAINER_LEVEL_FIT_H_
 #define PHYSPRING_TRAINER_LEVEL_FIT_H_
 
 #include <string>
 
-#include "trainer/adam.h"
 #include "trainer/fitter.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/held_back.h"
 #include "trainer/lifted_motion.h"
+#include "trainer/network/corrections_fit.h"
 #include "trainer/network/graph_network.h"
 #include "trainer/parameters.h"
 #include "trainer/state_arrays.h"
@@ -42,7 +40,7 @@ class LevelFit {
   // The level as fitted so far.
   SpringMassSystem System() const;
   int SubstepsPerSecond() const;
-  const Eigen::VectorXd& weights() const { return best_weights_; }
+  const Eigen::VectorXd& weights() const { return corrections_.best_weights(); }
   // Whether the common factors are fitted under the observer's last gain above 0, and the mean
   // square of the residuals then, m^2: what candidates are judged by.
   bool can_be_judged() const;
@@ -54,16 +52,13 @@ class LevelFit {
   LiftedMotion::Options MotionOptions(int threads, double gain = 0) const;
   Parameters CommonParameters() const;
   Parameters SpringParameters() const;
+  CorrectionsFit BeginCorrections(const Eigen::VectorXd& weights) const;
   SpringMassSystem NetworkBase(const Eigen::VectorXd& contact) const;
   SpringMassSystem CorrectedSystem() const;
   double HeldBackError(const SpringMassSystem& system) const;
-  void BeginNetwork();
   void BeginSprings();
   void StepCommon();
-  int UpdatesPerEpoch() const;
   void StepNetwork();
-  void Keep(double score);
-  void TurnBack();
   void StepSprings();
 
   const FitData& data_;
@@ -81,13 +76,7 @@ class LevelFit {
   double damping_ = 1e-2;
   double mean_square_ = 0;  // of the residuals
   Eigen::VectorXd common_, springs_;
-  Eigen::VectorXd weights_;
-  Eigen::VectorXd contact_;  // added to the logits of the ground's restitution and friction
-  Adam weights_adam_, contact_adam_;
-  Eigen::VectorXd best_weights_, best_contact_;  // on held-back frames ...
-  double best_score_ = 0;                        // ... their track error, m
-  int best_iteration_ = 0;
-  double rate_ = 1;  // of learning, relative to the options'
+  CorrectionsFit corrections_;
   std::string status_;
 };
 
