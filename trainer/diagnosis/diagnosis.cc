@@ -36,6 +36,7 @@ constexpr double kSimplyExplained = 0.8;
 // round the search, with the springs' refit, and the training.
 constexpr WorkShare kCommonShare{0, 0.2}, kSpringShare{0.2, 0.3};
 constexpr double kSearchPart = 0.5, kTrainingPart = 0.6;
+constexpr double kFullTraining = 0.8;  // of the training, the rest a refit of all
 
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
@@ -160,11 +161,7 @@ class Loop {
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
-    if (trained_on_) {
-      if (const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_)) {
-        Offer(*anew);
-      }
-    }
+    if (trained_on_) Train(stage.Part(kTrainingPart, 1));
     return true;
   }
 
@@ -180,6 +177,14 @@ class Loop {
     fitting_.journal().Stage(stage, kSpringSteps, status);
     fitting_.RefitSprings(kSpringSteps, &fit);
     return fit;
+  }
+
+  // A training with the effects found so far, and a refit of its springs and effects together.
+  void Train(const WorkShare& stage) {
+    std::optional<EffectFit> anew = TrainAnew(fitting_, stage.Part(0, kFullTraining), accepted_);
+    if (!anew) return;
+    Offer(*anew);
+    Offer(WithSprings(std::move(*anew), stage.Part(kFullTraining, 1), "refitting springs anew"));
   }
 
   // Whether the effect takes away a part `least_gain` of the error above the noise. `tried`: refits

@@ -84,7 +84,9 @@ void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* f
 }
 
 PieceKey KeyOf(const std::string& kind, const EffectFit& fit) {
-  return PieceKey(kind).Add(static_cast<double>(fit.body)).Add(fit.start_substeps).Add(fit.start);
+  PieceKey key(kind);
+  if (fit.trained) key.Add("trained");
+  return key.Add(static_cast<double>(fit.body)).Add(fit.start_substeps).Add(fit.start);
 }
 
 EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
