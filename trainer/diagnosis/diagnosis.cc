@@ -161,7 +161,7 @@ class Loop {
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
-    if (trained_on_) Train(stage.Part(kTrainingPart, 1));
+    if (trained_on_ && options_.train_anew) Train(stage.Part(kTrainingPart, 1));
     return true;
   }
 

@@ -34,6 +34,7 @@ struct DiagnosisOptions {
   int threads = 1;
   std::uint64_t seed = 0;
   int most_effects = 3;       // accepted
+  bool train_anew = true;     // step 6
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
   // What an effect must explain at least: a part of the error above the noise floor, and a part of
   // the noise floor.
