@@ -43,7 +43,7 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
   std::vector<int> counts = options.neighbours;
   if (counts.empty()) {
     counts =
-        recording.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{10, 18, 28, 40};
+        recording.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{18, 28, 40};
   }
   // more neighbours than there are particles are all the same
   const int most = std::max(1, recording.particle_count() - 1);

@@ -92,7 +92,8 @@ void ModelChoice::SearchStart(ChosenModel* model) const {
   }
 }
 
-// Of held-back frames, under the observer that the round ends with.
+// Of held-back frames, under the observer that the round ends with; in the last round without one:
+// that tells bodies apart whose motions are chaotic.
 double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& candidate) const {
   double sum = 0;
   for (const HeldBack::Judged& judged : held_back_.judged) {
@@ -101,7 +102,8 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
       options.substeps =
           StableSubsteps(ComputeStabilityBound(system), 1 / judged.whole->fps, kStepSafety);
     }
-    options.observer_gain = kObserverGains[kRounds[round_].last_gain];
+    const bool free = round_ == kRoundCount - 1;
+    options.observer_gain = free ? 0 : kObserverGains[kRounds[round_].last_gain];
     const int frames = judged.whole->train_frames;
     const auto rollout = RollOut(system, {judged.whole, frames}, options);
     if (rollout->diverged()) return kInfinity;

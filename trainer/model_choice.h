@@ -5,7 +5,8 @@
 //            start stiffnesses and frictions; three with and three without the controllers'
 //            velocity go on
 //   near     those are fitted with lower gains; the best with and without velocity go on
-//   springs  those are fitted a few steps further, spring by spring, with the same low gain
+//   springs  those are fitted a few steps further, spring by spring, with the same low gain, and
+//            judged by a free motion
 #ifndef PHYSPRING_TRAINER_MODEL_CHOICE_H_
 #define PHYSPRING_TRAINER_MODEL_CHOICE_H_
 
