@@ -9,22 +9,6 @@
 namespace physpring {
 namespace {
 
-// The view of a point set that nanoflann asks for.
-struct PointCloud {
-  Points points;
-  std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points.cols()); }
-  double kdtree_get_pt(std::size_t index, std::size_t dimension) const {
-    return points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(index));
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
-                                                  PointCloud, 3, int>;
-
 // What nanoflann asks of a result set; its own one has another type in each of its versions.
 struct WithinRadius {
   double radius_squared;
@@ -48,7 +32,22 @@ void Sort(std::vector<Neighbour>* neighbours) {
 }  // namespace
 
 struct NeighbourSearch::Tree {
-  PointCloud cloud;
+  // The view of a point set that nanoflann asks for.
+  struct Cloud {
+    Points points;
+    std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points.cols()); }
+    double kdtree_get_pt(std::size_t index, std::size_t dimension) const {
+      return points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(index));
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>,
+                                                    Cloud, 3, int>;
+
+  Cloud cloud;
   Index index;
   explicit Tree(const Points& points)
       : cloud{points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
