@@ -6,7 +6,7 @@
 //            velocity go on
 //   near     those are fitted with lower gains; the best with and without velocity go on
 //   springs  those are fitted a few steps further, spring by spring, with the same low gain, and
-//            judged by a free motion
+//            judged by a free motion as well
 #ifndef PHYSPRING_TRAINER_MODEL_CHOICE_H_
 #define PHYSPRING_TRAINER_MODEL_CHOICE_H_
 
@@ -64,7 +64,7 @@ class ModelChoice {
   void FinishContender(const SpringMassSystem& system);
   void BeginNextRound();
   void SearchStart(ChosenModel* model) const;
-  double TrackError(const SpringMassSystem& system, const Candidate& candidate) const;
+  double TrackError(const SpringMassSystem& system, const Candidate& candidate, double gain) const;
 
   const FitData& data_;
   TrainOptions options_;
