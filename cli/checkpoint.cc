@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/output_files.h"
-#include "twin/cone_name.h"
+#include "cli/train_words.h"
 #include "twin/effects/effect_json.h"
 #include "twin/error.h"
 
@@ -21,61 +21,31 @@ constexpr const char* kFinishedTraining = "train/finished";
 
 Json NumberOrAuto(int number) { return number > 0 ? Json(number) : Json("auto"); }
 
-const char* ReductionName(TrainOptions::Reduction reduction) {
-  switch (reduction) {
-    case TrainOptions::Reduction::kLearned:
-      return "learned";
-    case TrainOptions::Reduction::kRandom:
-      return "random";
-    case TrainOptions::Reduction::kGramian:
-      return "gramian";
-    case TrainOptions::Reduction::kKMeans:
-      return "kmeans";
-  }
-  return "";
-}
-
-const char* FeaturesName(TrainOptions::Network::Features features) {
-  switch (features) {
-    case TrainOptions::Network::Features::kLearned:
-      return "learned";
-    case TrainOptions::Network::Features::kUntrained:
-      return "untrained";
-    case TrainOptions::Network::Features::kPositions:
-      return "positions";
-  }
-  return "";
-}
-
 // Everything that the result depends on, but the seed, which has a place of its own. Not the number
 // of threads.
 std::string OptionsJson(const TrainOptions& options, const std::string& from) {
   Json json;
-  json["method"] = options.method == TrainOptions::Method::kFull ? "full" : "two-stage";
-  json["optimizer"] = options.optimizer == TrainOptions::Optimizer::kAutomatic     ? "auto"
-                      : options.optimizer == TrainOptions::Optimizer::kGaussNewton ? "gauss-newton"
-                                                                                   : "adam";
+  json["method"] = WordOf(kMethodWords, options.method);
+  json["optimizer"] = WordOf(kOptimizerWords, options.optimizer);
   json["levels"] = options.levels;
   if (options.levels > 1) {
     json["ratios"] =
         std::vector<double>(options.ratios.begin(), options.ratios.begin() + options.levels - 1);
-    json["reduction"] = ReductionName(options.reduction);
+    json["reduction"] = WordOf(kReductionWords, options.reduction);
     json["latent"] = options.network.latent;
     json["network_epochs"] = options.network.epochs;
     json["network_updates"] = options.network.updates;
     json["contact_updates"] = options.network.contact_updates;
-    json["features"] = FeaturesName(options.network.features);
+    json["features"] = WordOf(kFeatureWords, options.network.features);
   }
   if (!from.empty()) json["from"] = from;
   if (!options.effects.empty()) json["effects"] = Json::parse(EffectsToJson(options.effects));
   json["neighbours"] = options.neighbours.empty() ? Json("auto") : Json(options.neighbours);
   json["epochs"] = NumberOrAuto(options.epochs);
   json["substeps"] = NumberOrAuto(options.substeps);
-  json["precision"] = options.single_precision ? "float" : "double";
-  json["controller_velocity"] = !options.controller_velocity   ? "auto"
-                                : *options.controller_velocity ? "on"
-                                                               : "off";
-  json["cone"] = options.cone ? ConeName(*options.cone) : "auto";
+  json["precision"] = WordOf(kPrecisionWords, options.single_precision);
+  json["controller_velocity"] = WordOf(kVelocityWords, options.controller_velocity);
+  json["cone"] = WordOf(kConeWords, options.cone);
   json["self_collision"] = options.self_collision ? "on" : "off";
   return json.dump();
 }

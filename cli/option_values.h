@@ -6,8 +6,10 @@
 #define PHYSPRING_CLI_OPTION_VALUES_H_
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace physpring {
@@ -33,6 +35,34 @@ CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& 
 // A word of a few, which the help lists: "full|two-stage".
 CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
                        const std::vector<std::string>& choices, const std::string& description);
+
+// Words and what they stand for, the default anywhere among them.
+template <class Value>
+using Words = std::vector<std::pair<std::string, Value>>;
+
+// The word for `value`, which must be one of those listed.
+template <class Value>
+const std::string& WordOf(const Words<Value>& words, const Value& value) {
+  const auto stands_for = [&](const auto& word) { return word.second == value; };
+  return std::find_if(words.begin(), words.end(), stands_for)->first;
+}
+
+// What one of a few words stands for. The words must outlive the command.
+template <class Value>
+CLI::Option* AddChoice(CLI::App* command, const std::string& name, Value* value,
+                       const Words<Value>& words, const std::string& description) {
+  std::vector<std::string> choices;
+  for (const auto& [word, meaning] : words) choices.push_back(word);
+  const auto set = [value, &words](const std::string& choice) {
+    for (const auto& [word, meaning] : words) {
+      if (word == choice) *value = meaning;
+    }
+  };
+  return command->add_option_function<std::string>(name, set, description)
+      ->check(OneOf(choices))
+      ->type_name(CLI::detail::join(choices, "|"))
+      ->default_str(WordOf(words, *value));
+}
 
 // A whole number from 1, or auto: 0.
 CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,10 +20,10 @@
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
+#include "cli/train_words.h"
 #include "cli/training.h"
 #include "trainer/fit_data.h"
 #include "trainer/make_fitter.h"
-#include "twin/cone_name.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/predict.h"
@@ -35,36 +34,14 @@ namespace {
 struct TrainArguments {
   std::vector<std::string> recordings;
   std::string output, log, from, effects;
-  std::string reduction = "learned", features = "learned";
-  std::string method = "full", optimizer = "auto", precision = "double", velocity = "auto";
-  std::string cone = "auto";
-  TrainOptions options;  // without what is a word above
+  TrainOptions options;
   ResumeOptions run;
 };
 
 TrainOptions OptionsOf(const TrainArguments& arguments) {
-  using Optimizer = TrainOptions::Optimizer;
-  using Reduction = TrainOptions::Reduction;
-  const bool two_stage = arguments.method == "two-stage";
+  const bool two_stage = arguments.options.method == TrainOptions::Method::kTwoStage;
+  const bool learned = arguments.options.reduction == TrainOptions::Reduction::kLearned;
   TrainOptions options = arguments.options;
-  options.method = two_stage ? TrainOptions::Method::kTwoStage : TrainOptions::Method::kFull;
-  options.optimizer = arguments.optimizer == "auto"   ? Optimizer::kAutomatic
-                      : arguments.optimizer == "adam" ? Optimizer::kAdam
-                                                      : Optimizer::kGaussNewton;
-  options.single_precision = arguments.precision == "float";
-  if (arguments.velocity != "auto") options.controller_velocity = arguments.velocity == "on";
-  if (arguments.cone != "auto") options.cone = ConeOf(arguments.cone);
-  options.reduction = std::map<std::string, Reduction>{{"learned", Reduction::kLearned},
-                                                       {"random", Reduction::kRandom},
-                                                       {"gramian", Reduction::kGramian},
-                                                       {"kmeans", Reduction::kKMeans}}
-                          .at(arguments.reduction);
-  using Features = TrainOptions::Network::Features;
-  options.network.features = std::map<std::string, Features>{
-      {"learned", Features::kLearned},
-      {"untrained", Features::kUntrained},
-      {"positions",
-       Features::kPositions}}.at(arguments.features);
   if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
 
   const auto expect = [](bool right, const char* flag, const char* what) {
@@ -73,11 +50,12 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
   const bool counts = std::count(options.neighbours.begin(), options.neighbours.end(), 0) == 0;
   expect(counts, "--neighbours", "takes counts or auto, not both");
   expect(!two_stage || options.neighbours.empty(), "--neighbours", "is chosen by two-stage itself");
-  expect(!two_stage || arguments.optimizer == "auto", "--optimizer", "is of --method full");
+  expect(!two_stage || options.optimizer == TrainOptions::Optimizer::kAutomatic, "--optimizer",
+         "is of --method full");
   expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
          "needs one ratio for each level but level 0");
-  expect(options.reduction == Reduction::kLearned || arguments.features == "learned", "--features",
-         "is of --reduction learned");
+  expect(learned || options.network.features == TrainOptions::Network::Features::kLearned,
+         "--features", "is of --reduction learned");
   expect(!two_stage || arguments.effects.empty(), "--effects", "is of --method full");
   expect(arguments.from.empty() || arguments.effects.empty(), "--effects",
          "and --from exclude each other: level 0 comes with its effects");
@@ -201,10 +179,10 @@ void AddHierarchyOptions(CLI::App* command, TrainArguments* arguments) {
       ->check(NumberBetween(0, 1))
       ->type_name("R[,R...]")
       ->default_str("0.6,0.4,0.3");
-  AddChoice(command, "--reduction", &arguments->reduction,
-            {"learned", "random", "gramian", "kmeans"}, "how nodes are joined to coarser ones");
+  AddChoice(command, "--reduction", &options.reduction, kReductionWords,
+            "how nodes are joined to coarser ones");
   AddChoice(
-      command, "--features", &arguments->features, {"learned", "untrained", "positions"},
+      command, "--features", &options.network.features, kFeatureWords,
       "of nodes, by which the learned reduction joins them: the network's, those of a network "
       "that does not learn, or positions at rest");
   TrainOptions::Network& network = options.network;
@@ -234,7 +212,7 @@ void AddHierarchyOptions(CLI::App* command, TrainArguments* arguments) {
 
 void AddFitOptions(CLI::App* command, TrainArguments* arguments) {
   TrainOptions& options = arguments->options;
-  AddChoice(command, "--method", &arguments->method, {"full", "two-stage"},
+  AddChoice(command, "--method", &options.method, kMethodWords,
             "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
   AddHierarchyOptions(command, arguments);
   command
@@ -250,17 +228,17 @@ void AddFitOptions(CLI::App* command, TrainArguments* arguments) {
       ->transform(WholeNumberOrAuto(1000))
       ->type_name("N[,N...]|auto")
       ->default_str("auto");
-  AddChoice(command, "--optimizer", &arguments->optimizer, {"auto", "gauss-newton", "adam"},
+  AddChoice(command, "--optimizer", &options.optimizer, kOptimizerWords,
             "of single springs (full)");
   AddNumberOrAuto(command, "--epochs", &options.epochs, "steps of the last stage");
   AddNumberOrAuto(command, "--substeps", &options.substeps,
                   "sub-steps of a frame; auto: as many as are stable");
-  AddChoice(command, "--precision", &arguments->precision, {"double", "float"},
+  AddChoice(command, "--precision", &options.single_precision, kPrecisionWords,
             "of the simulation");
-  AddChoice(command, "--controller-velocity", &arguments->velocity, {"auto", "on", "off"},
+  AddChoice(command, "--controller-velocity", &options.controller_velocity, kVelocityWords,
             "whether dashpots feel the controllers' velocity; auto: whatever "
             "predicts better (full), no (two-stage)");
-  AddChoice(command, "--cone", &arguments->cone, {"auto", kElliptic, kPyramidal},
+  AddChoice(command, "--cone", &options.cone, kConeWords,
             "of friction on the ground: Coulomb's, or MuJoCo's default; auto: whatever predicts "
             "better (full), elliptic (two-stage)");
   command->add_flag("--self-collision", options.self_collision,

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words for what `physpring train` is asked for: in its flags, and in the options that a twin
+// file keeps.
+#ifndef PHYSPRING_CLI_TRAIN_WORDS_H_
+#define PHYSPRING_CLI_TRAIN_WORDS_H_
+
+#include <optional>
+
+#include "cli/option_values.h"
+#include "trainer/train_options.h"
+#include "twin/cone_name.h"
+
+namespace physpring {
+
+inline const Words<TrainOptions::Method> kMethodWords = {
+    {"full", TrainOptions::Method::kFull}, {"two-stage", TrainOptions::Method::kTwoStage}};
+
+inline const Words<TrainOptions::Optimizer> kOptimizerWords = {
+    {"auto", TrainOptions::Optimizer::kAutomatic},
+    {"gauss-newton", TrainOptions::Optimizer::kGaussNewton},
+    {"adam", TrainOptions::Optimizer::kAdam}};
+
+inline const Words<TrainOptions::Reduction> kReductionWords = {
+    {"learned", TrainOptions::Reduction::kLearned},
+    {"random", TrainOptions::Reduction::kRandom},
+    {"gramian", TrainOptions::Reduction::kGramian},
+    {"kmeans", TrainOptions::Reduction::kKMeans}};
+
+inline const Words<TrainOptions::Network::Features> kFeatureWords = {
+    {"learned", TrainOptions::Network::Features::kLearned},
+    {"untrained", TrainOptions::Network::Features::kUntrained},
+    {"positions", TrainOptions::Network::Features::kPositions}};
+
+// Of whether it is single.
+inline const Words<bool> kPrecisionWords = {{"double", false}, {"float", true}};
+
+inline const Words<std::optional<bool>> kVelocityWords = {
+    {"auto", std::nullopt}, {"on", true}, {"off", false}};
+
+inline const Words<std::optional<FrictionCone>> kConeWords = {
+    {"auto", std::nullopt},
+    {kElliptic, FrictionCone::kElliptic},
+    {kPyramidal, FrictionCone::kPyramidal}};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_TRAIN_WORDS_H_
