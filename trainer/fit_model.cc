@@ -42,8 +42,7 @@ EntryScale ScaleOf(Parameters::Kind kind) {
 std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions& options) {
   std::vector<int> counts = options.neighbours;
   if (counts.empty()) {
-    counts =
-        recording.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{18, 28, 40};
+    counts = recording.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{18, 28, 40};
   }
   // more neighbours than there are particles are all the same
   const int most = std::max(1, recording.particle_count() - 1);

@@ -40,8 +40,8 @@ class CorrectionsFit {
 
   double Progress() const;  // 0 ... 1
 
-  // As arrays "train/level/..." and back; only the best unless `learning`, that is between the first
-  // Judge and the last. The weights' number is that of the constructor.
+  // As arrays "train/level/..." and back; only the best unless `learning`, that is between the
+  // first Judge and the last. The weights' number is that of the constructor.
   void Save(bool learning, StateArrays* arrays) const;
   void Load(bool learning, const StateArrays& state);
 
