@@ -7,9 +7,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace physpring {
@@ -36,23 +37,26 @@ CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& 
 CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
                        const std::vector<std::string>& choices, const std::string& description);
 
-// Words and what they stand for, the default anywhere among them.
+// A word and what it stands for.
 template <class Value>
-using Words = std::vector<std::pair<std::string, Value>>;
+struct Word {
+  const char* word;
+  Value meaning;
+};
 
 // The word for `value`, which must be one of those listed.
-template <class Value>
-const std::string& WordOf(const Words<Value>& words, const Value& value) {
-  const auto stands_for = [&](const auto& word) { return word.second == value; };
-  return std::find_if(words.begin(), words.end(), stands_for)->first;
+template <class Value, std::size_t kCount>
+std::string WordOf(const Word<Value> (&words)[kCount], const Value& value) {
+  const auto stands_for = [&](const Word<Value>& word) { return word.meaning == value; };
+  return std::find_if(std::begin(words), std::end(words), stands_for)->word;
 }
 
 // What one of a few words stands for. The words must outlive the command.
-template <class Value>
+template <class Value, std::size_t kCount>
 CLI::Option* AddChoice(CLI::App* command, const std::string& name, Value* value,
-                       const Words<Value>& words, const std::string& description) {
+                       const Word<Value> (&words)[kCount], const std::string& description) {
   std::vector<std::string> choices;
-  for (const auto& [word, meaning] : words) choices.push_back(word);
+  for (const auto& [word, meaning] : words) choices.emplace_back(word);
   const auto set = [value, &words](const std::string& choice) {
     for (const auto& [word, meaning] : words) {
       if (word == choice) *value = meaning;

@@ -12,32 +12,32 @@
 
 namespace physpring {
 
-inline const Words<TrainOptions::Method> kMethodWords = {
+inline constexpr Word<TrainOptions::Method> kMethodWords[] = {
     {"full", TrainOptions::Method::kFull}, {"two-stage", TrainOptions::Method::kTwoStage}};
 
-inline const Words<TrainOptions::Optimizer> kOptimizerWords = {
+inline constexpr Word<TrainOptions::Optimizer> kOptimizerWords[] = {
     {"auto", TrainOptions::Optimizer::kAutomatic},
     {"gauss-newton", TrainOptions::Optimizer::kGaussNewton},
     {"adam", TrainOptions::Optimizer::kAdam}};
 
-inline const Words<TrainOptions::Reduction> kReductionWords = {
+inline constexpr Word<TrainOptions::Reduction> kReductionWords[] = {
     {"learned", TrainOptions::Reduction::kLearned},
     {"random", TrainOptions::Reduction::kRandom},
     {"gramian", TrainOptions::Reduction::kGramian},
     {"kmeans", TrainOptions::Reduction::kKMeans}};
 
-inline const Words<TrainOptions::Network::Features> kFeatureWords = {
+inline constexpr Word<TrainOptions::Network::Features> kFeatureWords[] = {
     {"learned", TrainOptions::Network::Features::kLearned},
     {"untrained", TrainOptions::Network::Features::kUntrained},
     {"positions", TrainOptions::Network::Features::kPositions}};
 
 // Of whether it is single.
-inline const Words<bool> kPrecisionWords = {{"double", false}, {"float", true}};
+inline constexpr Word<bool> kPrecisionWords[] = {{"double", false}, {"float", true}};
 
-inline const Words<std::optional<bool>> kVelocityWords = {
+inline constexpr Word<std::optional<bool>> kVelocityWords[] = {
     {"auto", std::nullopt}, {"on", true}, {"off", false}};
 
-inline const Words<std::optional<FrictionCone>> kConeWords = {
+inline constexpr Word<std::optional<FrictionCone>> kConeWords[] = {
     {"auto", std::nullopt},
     {kElliptic, FrictionCone::kElliptic},
     {kPyramidal, FrictionCone::kPyramidal}};
