@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/diagnosis/journal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <vector>
@@ -92,7 +94,9 @@ StateArrays Journal::Save() const {
                     {"sizes", NpzArray::Ints({sizes.size()}, sizes.data())},
                     {"values", NpzArray::Doubles({values.size()}, values.data())}};
   for (const auto& [hash, fit] : fits_) {
-    for (const auto& [name, values_of_fit] : fit) state[kFit + hash + "/" + name] = values_of_fit;
+    for (const auto& [name, values_of_fit] : fit) {
+      state[fmt::format("{}{}/{}", kFit, hash, name)] = values_of_fit;
+    }
   }
   return state;
 }
