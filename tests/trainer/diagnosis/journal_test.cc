@@ -52,7 +52,12 @@ TEST(Journal, KeysTellApartWhatPiecesDependOn) {
 // Counts to 3.
 class Counting : public Fitter {
  public:
-  bool Step() override { return count_ < 3 && (++count_, ++steps, true); }
+  bool Step() override {
+    if (count_ == 3) return false;
+    ++count_;
+    ++steps;
+    return true;
+  }
   double Progress() const override { return count_ / 3.0; }
   std::string Status() const override { return "counting"; }
   StateArrays Save() const override { return {{"train/count", NpzArray::Ints({}, &count_)}}; }
