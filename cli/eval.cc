@@ -26,8 +26,7 @@ struct EvalArguments {
   std::string twin;
   std::vector<std::string> recordings;
   std::string json, trajectory, picture;
-  std::string precision = "double";
-  int substeps = 0;  // 0: auto
+  PredictOptions options;
   int threads = 1;
 };
 
@@ -71,7 +70,7 @@ void WarnIfUseless(const Evaluation& evaluation) {
 }
 
 void Run(const EvalArguments& arguments) {
-  const PredictOptions options{arguments.precision == "float", arguments.substeps};
+  const PredictOptions& options = arguments.options;
   Evaluation evaluation{arguments.twin, ReadTwin(arguments.twin), options.single_precision, {}};
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
   ExpectWritable(arguments, entries);
@@ -119,9 +118,8 @@ void AddEvalCommand(CLI::App& app) {
   command->add_option("--picture", arguments->picture, "write a page with pictures and a film")
       ->check(EndsWithHtml())
       ->type_name("FILE.html");
-  AddChoice(command, "--precision", &arguments->precision, {"double", "float"},
-            "of the simulation");
-  AddNumberOrAuto(command, "--substeps", &arguments->substeps,
+  AddPrecision(command, &arguments->options.single_precision);
+  AddNumberOrAuto(command, "--substeps", &arguments->options.substeps,
                   "sub-steps of a frame; auto: stable ones, no longer than in training");
   AddThreads(command, &arguments->threads, "recordings at the same time; FPS are truest with 1");
   command->callback([arguments] { Run(*arguments); });

@@ -87,12 +87,8 @@ CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& 
       ->capture_default_str();
 }
 
-CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
-                       const std::vector<std::string>& choices, const std::string& description) {
-  return command->add_option(name, *choice, description)
-      ->check(OneOf(choices))
-      ->type_name(fmt::format("{}", fmt::join(choices, "|")))
-      ->capture_default_str();
+CLI::Option* AddPrecision(CLI::App* command, bool* single) {
+  return AddChoice(command, "--precision", single, kPrecisionWords, "of the simulation");
 }
 
 CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,

@@ -33,16 +33,15 @@ CLI::Validator OneOf(const std::vector<std::string>& words);
 // Any whole number that a seed can be.
 CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& description);
 
-// A word of a few, which the help lists: "full|two-stage".
-CLI::Option* AddChoice(CLI::App* command, const std::string& name, std::string* choice,
-                       const std::vector<std::string>& choices, const std::string& description);
-
 // A word and what it stands for.
 template <class Value>
 struct Word {
   const char* word;
   Value meaning;
 };
+
+// Of the simulation's numbers: whether they are single.
+inline constexpr Word<bool> kPrecisionWords[] = {{"double", false}, {"float", true}};
 
 // The word for `value`, which must be one of those listed.
 template <class Value, std::size_t kCount>
@@ -51,7 +50,8 @@ std::string WordOf(const Word<Value> (&words)[kCount], const Value& value) {
   return std::find_if(std::begin(words), std::end(words), stands_for)->word;
 }
 
-// What one of a few words stands for. The words must outlive the command.
+// What one of a few words stands for, which the help lists: "full|two-stage". The words must
+// outlive the command.
 template <class Value, std::size_t kCount>
 CLI::Option* AddChoice(CLI::App* command, const std::string& name, Value* value,
                        const Word<Value> (&words)[kCount], const std::string& description) {
@@ -67,6 +67,9 @@ CLI::Option* AddChoice(CLI::App* command, const std::string& name, Value* value,
       ->type_name(CLI::detail::join(choices, "|"))
       ->default_str(WordOf(words, *value));
 }
+
+// --precision: of the simulation, double or float.
+CLI::Option* AddPrecision(CLI::App* command, bool* single);
 
 // A whole number from 1, or auto: 0.
 CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,

@@ -31,9 +31,14 @@
 namespace physpring {
 namespace {
 
+constexpr Word<PictureQuality> kQualityWords[] = {{"fast", PictureQuality::kFast},
+                                                  {"high", PictureQuality::kHigh}};
+constexpr Word<bool> kStateWords[] = {{"full", true}, {"actions", false}};
+
 struct RolloutArguments {
-  std::string task, json, save_scene, shard, states = "full";
-  std::string video, quality = "fast";
+  std::string task, json, save_scene, shard;
+  std::string video;
+  PictureQuality quality = PictureQuality::kFast;
   std::vector<std::string> cameras;  // in videos
   int films = 1;                     // episodes, from the first one
   SweepOptions sweep;
@@ -95,18 +100,16 @@ std::string VideoPath(const RolloutArguments& arguments, int level, int episode)
 
 // Cameras where the policy looks or a video is wanted.
 void AddCameras(const RolloutArguments& arguments, const Task& task, SweepHooks* hooks) {
-  const PictureQuality quality =
-      arguments.quality == "high" ? PictureQuality::kHigh : PictureQuality::kFast;
-  hooks->prepare = [quality, &task](mjModel* model) {
+  hooks->prepare = [quality = arguments.quality, &task](mjModel* model) {
     PreparePictures(quality, task.width, task.height, model);
   };
-  hooks->make_viewer = [quality, &arguments](const TaskModel& model, int episode,
-                                             bool images) -> std::unique_ptr<Viewer> {
+  hooks->make_viewer = [&arguments](const TaskModel& model, int episode,
+                                    bool images) -> std::unique_ptr<Viewer> {
     const bool filmed =
         !arguments.video.empty() && episode < arguments.sweep.first + arguments.films;
     if (!filmed && !images) return nullptr;
     const std::string video = filmed ? VideoPath(arguments, model.level, episode) : "";
-    return MakeCameraThread(model, {quality, video, arguments.cameras});
+    return MakeCameraThread(model, {arguments.quality, video, arguments.cameras});
   };
 }
 
@@ -132,8 +135,7 @@ void Run(const RolloutArguments& arguments) {
         static_cast<double>(done) / all,
         fmt::format("episode {} of {}, {} of {} succeeded", done, all, successes, judged));
   };
-  SweepOptions options = arguments.sweep;
-  options.states = arguments.states == "full";
+  const SweepOptions& options = arguments.sweep;
   const Sweep sweep = RunSweep(task, options, hooks);
   std::set<std::string> warnings(sweep.warnings.begin(), sweep.warnings.end());
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
@@ -211,7 +213,7 @@ void AddPictureOptions(CLI::App* command, RolloutArguments* arguments) {
                    "in the video, side by side; default: the first one of the task")
       ->delimiter(',')
       ->type_name("NAME,...");
-  AddChoice(command, "--quality", &arguments->quality, {"fast", "high"},
+  AddChoice(command, "--quality", &arguments->quality, kQualityWords,
             "of pictures; high: shadows, smooth edges, round shapes");
 }
 
@@ -250,7 +252,7 @@ void AddRolloutCommand(CLI::App& app) {
       ->add_option("-o,--output", arguments->sweep.folder,
                    "keep episodes here; those that are finished there are not run again")
       ->type_name("DIR");
-  AddChoice(command, "--states", &arguments->states, {"full", "actions"},
+  AddChoice(command, "--states", &arguments->sweep.states, kStateWords,
             "what is kept: states of all frames, or only actions");
   AddPictureOptions(command, arguments.get());
   command->add_option("--json", arguments->json, "report to write")->type_name("FILE");

@@ -233,8 +233,7 @@ void AddFitOptions(CLI::App* command, TrainArguments* arguments) {
   AddNumberOrAuto(command, "--epochs", &options.epochs, "steps of the last stage");
   AddNumberOrAuto(command, "--substeps", &options.substeps,
                   "sub-steps of a frame; auto: as many as are stable");
-  AddChoice(command, "--precision", &options.single_precision, kPrecisionWords,
-            "of the simulation");
+  AddPrecision(command, &options.single_precision);
   AddChoice(command, "--controller-velocity", &options.controller_velocity, kVelocityWords,
             "whether dashpots feel the controllers' velocity; auto: whatever "
             "predicts better (full), no (two-stage)");

@@ -31,9 +31,6 @@ inline constexpr Word<TrainOptions::Network::Features> kFeatureWords[] = {
     {"untrained", TrainOptions::Network::Features::kUntrained},
     {"positions", TrainOptions::Network::Features::kPositions}};
 
-// Of whether it is single.
-inline constexpr Word<bool> kPrecisionWords[] = {{"double", false}, {"float", true}};
-
 inline constexpr Word<std::optional<bool>> kVelocityWords[] = {
     {"auto", std::nullopt}, {"on", true}, {"off", false}};
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "twin/neighbours.h"
+#include "twin/point_cloud.h"
 
 namespace physpring {
 namespace {
@@ -15,24 +16,11 @@ constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();
 
 bool IsSeen(const Points& points, Eigen::Index i) { return !std::isnan(points(0, i)); }
 
-// The view of a point set that nanoflann asks for.
-struct Cloud {
-  const Points& points;
-  std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points.cols()); }
-  double kdtree_get_pt(std::size_t index, std::size_t dimension) const {
-    return points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(index));
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 // Mean over the seen columns of `measured` of length(least Metric to a column of `predicted`).
 template <class Metric, class Length>
 double MeanNearest(const Points& measured, const Points& predicted, Length length) {
-  const Cloud cloud{predicted};
-  nanoflann::KDTreeSingleIndexAdaptor<Metric, Cloud, 3, int> tree(3, cloud);
+  const PointCloud cloud{predicted};
+  nanoflann::KDTreeSingleIndexAdaptor<Metric, PointCloud, 3, int> tree(3, cloud);
   tree.buildIndex();
   double sum = 0;
   int seen = 0;
@@ -59,10 +47,10 @@ const std::vector<Points>& TrackOf(const Recording& recording) {
 
 double ChamferDistance(const Points& measured, const Points& predicted, Norm norm) {
   if (norm == Norm::kL1) {
-    return MeanNearest<nanoflann::L1_Adaptor<double, Cloud>>(measured, predicted,
-                                                             [](double l1) { return l1; });
+    return MeanNearest<nanoflann::L1_Adaptor<double, PointCloud>>(measured, predicted,
+                                                                  [](double l1) { return l1; });
   }
-  return MeanNearest<nanoflann::L2_Simple_Adaptor<double, Cloud>>(
+  return MeanNearest<nanoflann::L2_Simple_Adaptor<double, PointCloud>>(
       measured, predicted, [](double squared) { return std::sqrt(squared); });
 }
 

@@ -6,6 +6,8 @@
 #include <nanoflann.hpp>
 #include <utility>
 
+#include "twin/point_cloud.h"
+
 namespace physpring {
 namespace {
 
@@ -32,25 +34,15 @@ void Sort(std::vector<Neighbour>* neighbours) {
 }  // namespace
 
 struct NeighbourSearch::Tree {
-  // The view of a point set that nanoflann asks for.
-  struct Cloud {
-    Points points;
-    std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points.cols()); }
-    double kdtree_get_pt(std::size_t index, std::size_t dimension) const {
-      return points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(index));
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-  };
-  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>,
-                                                    Cloud, 3, int>;
+  using Index =
+      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
+                                          PointCloud, 3, int>;
 
-  Cloud cloud;
+  Points points;
+  PointCloud cloud{points};
   Index index;
-  explicit Tree(const Points& points)
-      : cloud{points}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
+  explicit Tree(const Points& copied)
+      : points(copied), index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
     index.buildIndex();
   }
 };
@@ -59,7 +51,7 @@ NeighbourSearch::NeighbourSearch(const Points& points) : tree_(std::make_unique<
 NeighbourSearch::~NeighbourSearch() = default;
 
 std::vector<Neighbour> NeighbourSearch::Nearest(const Eigen::Vector3d& query, int count) const {
-  count = std::min(count, static_cast<int>(tree_->cloud.points.cols()));
+  count = std::min(count, static_cast<int>(tree_->points.cols()));
   if (count <= 0) return {};
   std::vector<int> index(count);
   std::vector<double> squared(count);
