@@ -12,36 +12,38 @@
 namespace physpring {
 namespace {
 
-class DryFrictionForce : public SpringEffectForce {
+class DryFrictionLaw {
  public:
-  using SpringEffectForce::SpringEffectForce;
+  static constexpr bool kHasInternal = true;
 
- protected:
-  bool has_internal() const override { return true; }
+  DryFrictionLaw(const Eigen::VectorXd& values, const Instant& instant)
+      : slip_strain_(values[0]), step_(instant.step) {}
 
-  double Tension(const SpringMoment& s, const Instant& instant, double* z) const override {
-    const double slip = values_[0] * s.rest_length;
-    *z = std::clamp(*z + instant.step * s.rate, -slip, slip);
+  double Tension(const SpringMoment& s, double* z) const {
+    const double slip = slip_strain_ * s.rest_length;
+    *z = std::clamp(*z + step_ * s.rate, -slip, slip);
     return s.stiffness * *z;
   }
 
-  void TensionAdjoint(const SpringMoment& s, const Instant& instant, double z, double tension_bar,
-                      double* z_bar, SpringMoment* bar,
-                      Eigen::VectorXd* values_bar) const override {
+  void TensionAdjoint(const SpringMoment& s, double z, double tension_bar, double* z_bar,
+                      SpringMoment* bar, Eigen::VectorXd* values_bar) const {
     double after = z;
-    Tension(s, instant, &after);
+    Tension(s, &after);
     bar->stiffness += tension_bar * after;
     *z_bar += tension_bar * s.stiffness;
-    const double free = z + instant.step * s.rate;
+    const double free = z + step_ * s.rate;
     if (after == free) {
-      bar->rate += instant.step * *z_bar;
+      bar->rate += step_ * *z_bar;
       return;
     }
     const double sign = free > after ? 1 : -1;
     (*values_bar)[0] += sign * s.rest_length * *z_bar;
-    bar->rest_length += sign * values_[0] * *z_bar;
+    bar->rest_length += sign * slip_strain_ * *z_bar;
     *z_bar = 0;
   }
+
+ private:
+  double slip_strain_, step_;
 };
 
 class DryFriction : public Effect {
@@ -55,7 +57,7 @@ class DryFriction : public Effect {
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    return std::make_unique<DryFrictionForce>(system, values);
+    return std::make_unique<SpringEffectForce<DryFrictionLaw>>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     if (!values.isZero()) bound->stiffness *= 2;

@@ -29,10 +29,11 @@ template <class Real>
 void EffectStep<Real>::Unpack(const State& state, EffectBuffers* buffers) const {
   buffers->x.resize(3, columns_);
   buffers->v.resize(3, columns_);
+  double *x = buffers->x.data(), *v = buffers->v.data();
   for (int i = 0; i < columns_; ++i) {
     for (int j = 0; j < 3; ++j) {
-      buffers->x(j, i) = static_cast<double>(state[i].x[j]);
-      buffers->v(j, i) = static_cast<double>(state[i].v[j]);
+      x[3 * i + j] = static_cast<double>(state[i].x[j]);
+      v[3 * i + j] = static_cast<double>(state[i].v[j]);
     }
   }
   buffers->internal.resize(effects_.internal_size());
@@ -45,8 +46,9 @@ void EffectStep<Real>::AddForces(double time, double step, const State& state, S
   Unpack(state, buffers);
   buffers->force.setZero(3, columns_);
   effects_.AddForces({time, step, buffers->x, buffers->v}, &buffers->internal, &buffers->force);
+  const double* added = buffers->force.data();
   for (int i = 0; i < nodes_; ++i) {
-    for (int j = 0; j < 3; ++j) (*force)[i].f[j] += static_cast<Real>(buffers->force(j, i));
+    for (int j = 0; j < 3; ++j) (*force)[i].f[j] += static_cast<Real>(added[3 * i + j]);
   }
   PackInternal(buffers->internal, columns_ + 1, next);
 }

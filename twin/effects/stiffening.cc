@@ -8,27 +8,31 @@
 namespace physpring {
 namespace {
 
-class StiffeningForce : public SpringEffectForce {
+class StiffeningLaw {
  public:
-  using SpringEffectForce::SpringEffectForce;
+  static constexpr bool kHasInternal = false;
 
- protected:
-  double Tension(const SpringMoment& s, const Instant&, double*) const override {
+  StiffeningLaw(const Eigen::VectorXd& values, const Instant&) : ratio_(values[0]) {}
+
+  double Tension(const SpringMoment& s, double*) const {
     const double strain = (s.length - s.rest_length) / s.rest_length;
-    return values_[0] * s.stiffness * s.rest_length * strain * strain * strain;
+    return ratio_ * s.stiffness * s.rest_length * strain * strain * strain;
   }
-  void TensionAdjoint(const SpringMoment& s, const Instant&, double, double tension_bar, double*,
-                      SpringMoment* bar, Eigen::VectorXd* values_bar) const override {
+  void TensionAdjoint(const SpringMoment& s, double, double tension_bar, double*, SpringMoment* bar,
+                      Eigen::VectorXd* values_bar) const {
     const double strain = (s.length - s.rest_length) / s.rest_length;
     const double cube = strain * strain * strain;
     (*values_bar)[0] += tension_bar * s.stiffness * s.rest_length * cube;
-    bar->stiffness += tension_bar * values_[0] * s.rest_length * cube;
+    bar->stiffness += tension_bar * ratio_ * s.rest_length * cube;
     // forward: strain = l / L - 1
-    const double slope = tension_bar * values_[0] * s.stiffness * 3 * strain * strain;
+    const double slope = tension_bar * ratio_ * s.stiffness * 3 * strain * strain;
     bar->length += slope;
     bar->rest_length +=
-        tension_bar * values_[0] * s.stiffness * cube - slope * s.length / s.rest_length;
+        tension_bar * ratio_ * s.stiffness * cube - slope * s.length / s.rest_length;
   }
+
+ private:
+  double ratio_;  // alpha
 };
 
 class Stiffening : public Effect {
@@ -42,7 +46,7 @@ class Stiffening : public Effect {
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    return std::make_unique<StiffeningForce>(system, values);
+    return std::make_unique<SpringEffectForce<StiffeningLaw>>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     // at the strains that a soft body lives in

@@ -10,25 +10,28 @@ namespace {
 
 constexpr double kLeast = -0.9;  // of a t
 
-class StiffnessDriftForce : public SpringEffectForce {
+class StiffnessDriftLaw {
  public:
-  using SpringEffectForce::SpringEffectForce;
+  static constexpr bool kHasInternal = false;
 
- protected:
-  double Tension(const SpringMoment& s, const Instant& instant, double*) const override {
-    return Drift(instant) * s.stiffness * (s.length - s.rest_length);
+  StiffnessDriftLaw(const Eigen::VectorXd& values, const Instant& instant)
+      : time_(instant.time), drift_(std::max(kLeast, values[0] * instant.time)) {}
+
+  double Tension(const SpringMoment& s, double*) const {
+    return drift_ * s.stiffness * (s.length - s.rest_length);
   }
-  void TensionAdjoint(const SpringMoment& s, const Instant& instant, double, double tension_bar,
-                      double*, SpringMoment* bar, Eigen::VectorXd* values_bar) const override {
-    const double stretch = s.length - s.rest_length, drift = Drift(instant);
-    if (drift > kLeast) (*values_bar)[0] += tension_bar * instant.time * s.stiffness * stretch;
-    bar->stiffness += tension_bar * drift * stretch;
-    bar->length += tension_bar * drift * s.stiffness;
-    bar->rest_length -= tension_bar * drift * s.stiffness;
+  void TensionAdjoint(const SpringMoment& s, double, double tension_bar, double*, SpringMoment* bar,
+                      Eigen::VectorXd* values_bar) const {
+    const double stretch = s.length - s.rest_length;
+    if (drift_ > kLeast) (*values_bar)[0] += tension_bar * time_ * s.stiffness * stretch;
+    bar->stiffness += tension_bar * drift_ * stretch;
+    bar->length += tension_bar * drift_ * s.stiffness;
+    bar->rest_length -= tension_bar * drift_ * s.stiffness;
   }
 
  private:
-  double Drift(const Instant& instant) const { return std::max(kLeast, values_[0] * instant.time); }
+  double time_;
+  double drift_;  // a t
 };
 
 class StiffnessDrift : public Effect {
@@ -42,7 +45,7 @@ class StiffnessDrift : public Effect {
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    return std::make_unique<StiffnessDriftForce>(system, values);
+    return std::make_unique<SpringEffectForce<StiffnessDriftLaw>>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     constexpr double kDuration = 10;  // s, of a long recording

@@ -8,24 +8,28 @@
 namespace physpring {
 namespace {
 
-class TensionOnlyForce : public SpringEffectForce {
+class TensionOnlyLaw {
  public:
-  using SpringEffectForce::SpringEffectForce;
+  static constexpr bool kHasInternal = false;
 
- protected:
-  double Tension(const SpringMoment& s, const Instant&, double*) const override {
+  TensionOnlyLaw(const Eigen::VectorXd& values, const Instant&) : slack_share_(values[0]) {}
+
+  double Tension(const SpringMoment& s, double*) const {
     if (s.length >= s.rest_length) return 0;
-    return -values_[0] * s.stiffness * (s.length - s.rest_length);
+    return -slack_share_ * s.stiffness * (s.length - s.rest_length);
   }
-  void TensionAdjoint(const SpringMoment& s, const Instant&, double, double tension_bar, double*,
-                      SpringMoment* bar, Eigen::VectorXd* values_bar) const override {
+  void TensionAdjoint(const SpringMoment& s, double, double tension_bar, double*, SpringMoment* bar,
+                      Eigen::VectorXd* values_bar) const {
     if (s.length >= s.rest_length) return;
     const double stretch = s.length - s.rest_length;
     (*values_bar)[0] -= tension_bar * s.stiffness * stretch;
-    bar->stiffness -= tension_bar * values_[0] * stretch;
-    bar->length -= tension_bar * values_[0] * s.stiffness;
-    bar->rest_length += tension_bar * values_[0] * s.stiffness;
+    bar->stiffness -= tension_bar * slack_share_ * stretch;
+    bar->length -= tension_bar * slack_share_ * s.stiffness;
+    bar->rest_length += tension_bar * slack_share_ * s.stiffness;
   }
+
+ private:
+  double slack_share_;
 };
 
 class TensionOnly : public Effect {
@@ -37,7 +41,7 @@ class TensionOnly : public Effect {
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    return std::make_unique<TensionOnlyForce>(system, values);
+    return std::make_unique<SpringEffectForce<TensionOnlyLaw>>(system, values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
     if (values[0] < 1) {

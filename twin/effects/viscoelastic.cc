@@ -9,39 +9,39 @@
 namespace physpring {
 namespace {
 
-class ViscoelasticForce : public SpringEffectForce {
+class ViscoelasticLaw {
  public:
-  using SpringEffectForce::SpringEffectForce;
+  static constexpr bool kHasInternal = true;
 
- protected:
-  bool has_internal() const override { return true; }
+  ViscoelasticLaw(const Eigen::VectorXd& values, const Instant& instant)
+      : ratio_(values[0]),
+        time_(values[1]),
+        step_(instant.step),
+        decay_(time_ > 0 ? std::exp(-step_ / time_) : 0) {}
 
-  double Tension(const SpringMoment& s, const Instant& instant, double* z) const override {
-    *z = (*z + instant.step * s.rate) * Decay(instant);
-    return values_[0] * s.stiffness * *z;
+  double Tension(const SpringMoment& s, double* z) const {
+    *z = (*z + step_ * s.rate) * decay_;
+    return ratio_ * s.stiffness * *z;
   }
 
-  void TensionAdjoint(const SpringMoment& s, const Instant& instant, double z, double tension_bar,
-                      double* z_bar, SpringMoment* bar,
-                      Eigen::VectorXd* values_bar) const override {
+  void TensionAdjoint(const SpringMoment& s, double z, double tension_bar, double* z_bar,
+                      SpringMoment* bar, Eigen::VectorXd* values_bar) const {
     double after = z;
-    Tension(s, instant, &after);
+    Tension(s, &after);
     (*values_bar)[0] += tension_bar * s.stiffness * after;
-    bar->stiffness += tension_bar * values_[0] * after;
-    *z_bar += tension_bar * values_[0] * s.stiffness;
+    bar->stiffness += tension_bar * ratio_ * after;
+    *z_bar += tension_bar * ratio_ * s.stiffness;
     // forward: z' = (z + h rate) exp(-h / tau)
-    if (values_[1] > 0) {
-      (*values_bar)[1] += *z_bar * after * instant.step / (values_[1] * values_[1]);
+    if (time_ > 0) {
+      (*values_bar)[1] += *z_bar * after * step_ / (time_ * time_);
     }
-    *z_bar *= Decay(instant);
-    bar->rate += instant.step * *z_bar;
+    *z_bar *= decay_;
+    bar->rate += step_ * *z_bar;
   }
 
  private:
-  // Without a time there is no memory.
-  double Decay(const Instant& instant) const {
-    return values_[1] > 0 ? std::exp(-instant.step / values_[1]) : 0;
-  }
+  double ratio_, time_, step_;
+  double decay_;  // without a time there is no memory
 };
 
 class Viscoelastic : public Effect {
@@ -56,7 +56,7 @@ class Viscoelastic : public Effect {
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    return std::make_unique<ViscoelasticForce>(system, values);
+    return std::make_unique<SpringEffectForce<ViscoelasticLaw>>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     bound->stiffness *= 1 + values[0];

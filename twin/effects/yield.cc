@@ -11,17 +11,17 @@
 namespace physpring {
 namespace {
 
-class YieldForce : public SpringEffectForce {
+class YieldLaw {
  public:
-  using SpringEffectForce::SpringEffectForce;
+  static constexpr bool kHasInternal = true;
 
- protected:
-  bool has_internal() const override { return true; }
+  YieldLaw(const Eigen::VectorXd& values, const Instant&)
+      : stretch_(values[0]), strain_(values[1]) {}
 
-  double Tension(const SpringMoment& s, const Instant&, double* p) const override {
-    if (values_.isZero()) return 0;
+  double Tension(const SpringMoment& s, double* p) const {
+    if (stretch_ == 0 && strain_ == 0) return 0;
     const double stretch = s.length - s.rest_length;
-    const double threshold = Threshold(s);
+    const double threshold = stretch_ + strain_ * s.rest_length;
     if (stretch - *p > threshold) {
       *p = stretch - threshold;
     } else if (stretch - *p < -threshold) {
@@ -30,12 +30,11 @@ class YieldForce : public SpringEffectForce {
     return -s.stiffness * *p;
   }
 
-  void TensionAdjoint(const SpringMoment& s, const Instant& instant, double p, double tension_bar,
-                      double* p_bar, SpringMoment* bar,
-                      Eigen::VectorXd* values_bar) const override {
-    if (values_.isZero()) return;
+  void TensionAdjoint(const SpringMoment& s, double p, double tension_bar, double* p_bar,
+                      SpringMoment* bar, Eigen::VectorXd* values_bar) const {
+    if (stretch_ == 0 && strain_ == 0) return;
     double after = p;
-    Tension(s, instant, &after);
+    Tension(s, &after);
     // forward: T = -k p
     bar->stiffness -= tension_bar * after;
     *p_bar -= tension_bar * s.stiffness;
@@ -43,14 +42,14 @@ class YieldForce : public SpringEffectForce {
     // forward: p = l - L -+ (y_m + y L)
     const double sign = after > p ? -1 : 1;
     bar->length += *p_bar;
-    bar->rest_length += (sign * values_[1] - 1) * *p_bar;
+    bar->rest_length += (sign * strain_ - 1) * *p_bar;
     (*values_bar)[0] += sign * *p_bar;
     (*values_bar)[1] += sign * s.rest_length * *p_bar;
     *p_bar = 0;
   }
 
  private:
-  double Threshold(const SpringMoment& s) const { return values_[0] + values_[1] * s.rest_length; }
+  double stretch_, strain_;  // where it yields
 };
 
 class Yield : public Effect {
@@ -72,7 +71,7 @@ class Yield : public Effect {
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    return std::make_unique<YieldForce>(system, values);
+    return std::make_unique<SpringEffectForce<YieldLaw>>(system, values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
     EffectMjcf mjcf{EffectMjcf::Carrier::kTendon, {}, {}, ""};
