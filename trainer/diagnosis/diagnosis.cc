@@ -11,6 +11,7 @@
 #include "trainer/diagnosis/effect_search.h"
 #include "trainer/diagnosis/noise_floor.h"
 #include "trainer/diagnosis/trained_fit.h"
+#include "trainer/parallel.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
 #include "twin/predict.h"
@@ -26,7 +27,7 @@ constexpr int kDraws = 2000;
 constexpr double kBlock = 0.2;  // s, of the bootstrap
 // Held-out errors, times the noise floor: below the first, nothing is missing; below the second,
 // nothing besides the effects that were found; above the third, something is.
-constexpr double kExplained = 1.25, kExplainedByEffects = 1.5, kUnexplained = 2.5;
+constexpr double kExplained = 1.25, kExplainedByEffects = 2, kUnexplained = 2.5;
 
 // Part of the error above the noise that an effect must explain with common factors alone, where
 // single springs could do without it.
@@ -34,9 +35,8 @@ constexpr double kSimplyExplained = 0.8;
 
 // Shares of the work, as the journal tells it: refits without an effect, then rounds, and of a
 // round the search, with the springs' refit, and the training.
-constexpr WorkShare kCommonShare{0, 0.2}, kSpringShare{0.2, 0.3};
-constexpr double kSearchPart = 0.5, kTrainingPart = 0.6;
-constexpr double kFullTraining = 0.8;  // of the training, the rest a refit of all
+constexpr WorkShare kCommonShare{0, 0.2};
+constexpr double kSearchPart = 0.5, kTrainingPart = 0.65;
 
 bool TrainedOnThis(const Twin& twin, const Recording& recording) {
   return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
@@ -110,6 +110,8 @@ class Loop {
         block_(static_cast<int>(std::ceil(kBlock * fitting.recordings()[0].recording->fps))) {}
 
   int block() const { return block_; }
+  // Without any new effect, and with those that were accepted.
+  const EffectFit& before() const { return before_; }
   const EffectFit& accepted() const { return accepted_; }
   // The same without the springs' own parameters.
   const EffectFit& common() const { return common_; }
@@ -130,26 +132,24 @@ class Loop {
     if (fit.track.held < accepted_.track.held) accepted_ = fit;
   }
 
-  // Single springs, too, unless those of the twin were better.
-  void FitSprings() {
-    if (!trained_on_ || accepted_.trained) return;
-    accepted_ = WithSprings(accepted_, kSpringShare, "refitting springs without any new effect");
-  }
-
   // Looks for one more effect; false if none is accepted.
   bool Round(int round) {
-    const bool explained = round == 0 ? common_.track.held < kExplained * noise_floor_
-                                      : accepted_.track.held < kExplainedByEffects * noise_floor_;
-    if (explained) return false;
     const WorkShare stage = ShareOf(round);
-    const EffectSearchResult search =
-        SearchEffects(fitting_, bodies_, effects_, stage.Part(0, kSearchPart));
-    if (search.fits.empty()) return false;
-    const std::size_t best = ChooseSimplest(search.fits, block_, options_.seed);
+    EffectSearchResult search;
+    if (!IsExplained(round)) {
+      search = SearchEffects(fitting_, bodies_, effects_, stage.Part(0, kSearchPart));
+    }
+    const bool found = !search.fits.empty();
+    const std::size_t best = found ? ChooseSimplest(search.fits, block_, options_.seed) : 0;
     if (round == 0) candidates_ = RankEffects(search, common_, best, block_, options_.seed);
-    const EffectFit chosen = search.fits[best];
-    EffectFit with_springs = WithSprings(chosen, stage.Part(kSearchPart, kTrainingPart),
-                                         "refitting springs with " + chosen.start.back().name);
+    const EffectFit chosen = found ? search.fits[best] : common_;
+    EffectFit with_springs = chosen;
+    std::vector<EffectFit*> refitted;
+    if (round == 0 && !accepted_.trained) refitted.push_back(&accepted_);
+    if (found) refitted.push_back(&with_springs);
+    RefitSprings(stage.Part(kSearchPart, kTrainingPart), refitted);
+    if (round == 0) before_ = accepted_;
+    if (!found) return false;
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
     const bool without_springs =
@@ -161,30 +161,33 @@ class Loop {
     accepted_ = std::move(with_springs);
     common_ = chosen;
     bodies_ = {chosen};
-    if (trained_on_ && options_.train_anew) Train(stage.Part(kTrainingPart, 1));
+    if (!trained_on_ || !options_.train_anew) return true;
+    if (const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_)) {
+      Offer(*anew);
+    }
     return true;
   }
 
  private:
   // Half of what is left after the round before, since few diagnoses need all rounds.
   WorkShare ShareOf(int round) const {
-    const double left = (1 - kSpringShare.last) * std::pow(0.5, round);
+    const double left = (1 - kCommonShare.last) * std::pow(0.5, round);
     return {1 - left, round + 1 == options_.most_effects ? 1 : 1 - left / 2};
   }
 
-  EffectFit WithSprings(EffectFit fit, const WorkShare& stage, const std::string& status) const {
-    if (!trained_on_) return fit;
-    fitting_.journal().Stage(stage, kSpringSteps, status);
-    fitting_.RefitSprings(kSpringSteps, &fit);
-    return fit;
+  bool IsExplained(int round) const {
+    return round == 0 ? common_.track.held < kExplained * noise_floor_
+                      : accepted_.track.held < kExplainedByEffects * noise_floor_;
   }
 
-  // A training with the effects found so far, and a refit of its springs and effects together.
-  void Train(const WorkShare& stage) {
-    std::optional<EffectFit> anew = TrainAnew(fitting_, stage.Part(0, kFullTraining), accepted_);
-    if (!anew) return;
-    Offer(*anew);
-    Offer(WithSprings(std::move(*anew), stage.Part(kFullTraining, 1), "refitting springs anew"));
+  // Single springs, too, of all these at the same time.
+  void RefitSprings(const WorkShare& stage, const std::vector<EffectFit*>& fits) const {
+    if (!trained_on_) return;
+    const int count = static_cast<int>(fits.size());
+    fitting_.journal().Stage(stage, count * kSpringSteps, "refitting single springs");
+    ParallelFor(count, options_.threads, [&](int i) {
+      fitting_.RefitSprings(kSpringSteps, fits[static_cast<std::size_t>(i)]);
+    });
   }
 
   // Whether the effect takes away a part `least_gain` of the error above the noise. `tried`: refits
@@ -206,6 +209,7 @@ class Loop {
   int block_;
   std::vector<EffectFit> bodies_;  // that effects are added to
   EffectFit common_, accepted_;    // without and with the springs' own parameters
+  EffectFit before_;               // accepted_, without any new effect
   std::vector<EffectCandidate> candidates_;
 };
 
@@ -270,12 +274,11 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
     if (const auto trained = AsTrained(twin, splits, loop.accepted())) loop.Offer(*trained);
   }
-  loop.FitSprings();
-  result.before = loop.accepted().track;
-  result.before_track = loop.accepted().held;
   for (int round = 0; round < options.most_effects && loop.Round(round); ++round) {
   }
   const EffectFit& accepted = loop.accepted();
+  result.before = loop.before().track;
+  result.before_track = loop.before().held;
   result.candidates = loop.candidates();
   result.after = accepted.track;
   result.after_track = accepted.held;

@@ -58,12 +58,16 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   const Recording shaped = WithShapeOf(own.base, recording);
   for (const Candidate& candidate : Candidates(shaped, options)) {
     const SpringMassSystem system = StartSystem(shaped, candidate, kStart);
-    const bool known = std::any_of(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
+    const auto known = std::find_if(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
       return body.controller_velocity == candidate.controller_velocity &&
              body.base.springs == system.springs;
     });
-    if (known) continue;
-    bodies.push_back({system, candidate.controller_velocity, false, candidate.Label()});
+    if (known != bodies.end()) {
+      known->neighbours = candidate.neighbours;
+      continue;
+    }
+    bodies.push_back(
+        {system, candidate.controller_velocity, false, candidate.Label(), candidate.neighbours});
   }
   return bodies;
 }

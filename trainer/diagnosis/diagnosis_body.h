@@ -22,6 +22,7 @@ struct DiagnosisBody {
   bool controller_velocity = true;
   bool trusted = false;  // its own parameters hardly move
   std::string label;
+  int neighbours = 0;  // of an inner particle, about; 0: as many as the twin's training chose
 };
 
 // Never empty; the twin's own model first. `recording` is one of the twin's object.

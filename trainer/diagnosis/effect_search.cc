@@ -28,7 +28,11 @@ struct Cut {
 // Bodies without effects, down to the gain of the trace and down to none; with an effect.
 constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 5, 4, 4}, {0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
 constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
-constexpr std::array<Cut, 3> kCuts = {{{0.1, 3, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
+constexpr std::array<Cut, 4> kCuts = {
+    {{0.1, 1, 8, 2}, {0.1, 2, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
+
+// Under an observer, a misfit so many times the least one is hopeless.
+constexpr double kHopeless = 4;
 
 std::string NewEffect(const EffectFit& fit) {
   return fit.start.empty() ? "" : fit.start.back().name;
@@ -48,6 +52,9 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* f
   std::erase_if(*fits,
                 [&](const EffectFit& fit) { return kept[NewEffect(fit)]++ >= of_an_effect; });
   fits->resize(std::min(fits->size(), count));
+  std::erase_if(*fits, [least = fits->empty() ? 0 : fits->front().misfit](const EffectFit& fit) {
+    return fit.misfit > kHopeless * least;
+  });
 }
 
 // Successive halving; the best fit by misfit is the first one after it.
