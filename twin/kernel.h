@@ -18,12 +18,21 @@ inline constexpr int kSpringBlock = 4;
 // The springs, in blocks of 4 that share their first node (spring_blocks.h).
 template <class Real>
 struct SpringView {
-  int blocks;               // even
-  const int* a;             // (blocks) the node that the springs of a block share
-  const int* b;             // (4 blocks) the other node of each spring
-  const Real* stiffness;    // (4 blocks) k, N/m
-  const Real* rest_length;  // (4 blocks) L, m
-  const Real* dashpot;      // (4 blocks) c, N s/m
+  int blocks;                     // even
+  const int* a;                   // (blocks) the node that the springs of a block share
+  const int* b;                   // (4 blocks) the other node of each spring
+  const Real* stiffness;          // (4 blocks) k, N/m
+  const Real* rest_length;        // (4 blocks) L, m
+  const Real* dashpot;            // (4 blocks) c, N s/m
+  const Real* tension = nullptr;  // (4 blocks) T that effects add, N; null: none
+};
+
+// What T depends on (twin/effects/spring_tension.h), and where the adjoint of it begins.
+template <class Real>
+struct SpringMeasures {
+  Real* length;       // (4 blocks) l, m
+  Real* rate;         // (4 blocks) of change of the length, m/s
+  Real* tension_bar;  // (4 blocks) d loss / d T; not asked for without a force_bar
 };
 
 // Where the derivatives with respect to the parameters of a SpringView are added to.
@@ -32,6 +41,9 @@ struct SpringGradientView {
   Real* stiffness;
   Real* rest_length;
   Real* dashpot;
+  // d loss / d length and rate through T: given, if there is a T.
+  const Real* length = nullptr;
+  const Real* rate = nullptr;
 };
 
 // What moves the free nodes, besides the springs.
@@ -55,6 +67,8 @@ struct NodeGradientView {
 template <class Real>
 struct Kernel {
   const char* name;
+  void (*measure_springs)(SpringView<Real> springs, const NodeState<Real>* state,
+                          const NodeForce<Real>* force_bar, SpringMeasures<Real> measures);
   void (*add_spring_forces)(SpringView<Real> springs, const NodeState<Real>* state,
                             NodeForce<Real>* force);
   void (*add_spring_forces_adjoint)(SpringView<Real> springs, const NodeState<Real>* state,

@@ -16,6 +16,7 @@ namespace {
 
 template <class Real>
 constexpr Kernel<Real> kScalar = {"scalar",
+                                  MeasureSprings<Real>,
                                   AddSpringForces<Real>,
                                   AddSpringForcesAdjoint<Real>,
                                   UpdateVelocities<Real>,

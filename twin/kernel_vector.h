@@ -43,14 +43,43 @@ struct VectorKernel {
                     u);
   }
 
+  // w = f_a - f_b
+  static void Subtract(SpringView<Real> springs, int vector, const NodeForce<Real>* force, V* w) {
+    Lanes::Subtract(force, springs.a + Lanes::kBlocks * vector, springs.b + kSprings * vector, w);
+  }
+
+  static void MeasureSprings(SpringView<Real> springs, const NodeState<Real>* state,
+                             const NodeForce<Real>* force_bar, SpringMeasures<Real> measures) {
+    for (int i = 0; i < springs.blocks / Lanes::kBlocks; ++i) {
+      V d[3], u[3], w[3];
+      Subtract(springs, i, state, d, u);
+      Law law = Parameters(springs, i);
+      law.Evaluate(Law::Dot(d, d), Law::Dot(d, u));
+      Lanes::Store(law.length, measures.length + kSprings * i);
+      Lanes::Store(law.rate, measures.rate + kSprings * i);
+      if (force_bar == nullptr) continue;
+      Subtract(springs, i, force_bar, w);
+      Lanes::Store(law.TensionBar(Law::Dot(d, w)), measures.tension_bar + kSprings * i);
+    }
+  }
+
   static void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                               NodeForce<Real>* force) {
+    springs.tension != nullptr ? AddForces<true>(springs, state, force)
+                               : AddForces<false>(springs, state, force);
+  }
+
+  // Two functions, so that springs without effects do not pay for them.
+  template <bool kHasTension>
+  static void AddForces(SpringView<Real> springs, const NodeState<Real>* state,
+                        NodeForce<Real>* force) {
     V d[kChunk][3], d_d[kChunk], d_u[kChunk], scale[kChunk];
     const int vectors = springs.blocks / Lanes::kBlocks;
     for (int first = 0; first < vectors; first += kChunk) {
       const int count = first + kChunk < vectors ? kChunk : vectors - first;
       const auto evaluate = [&](int i) {
         Law law = Parameters(springs, first + i);
+        if constexpr (kHasTension) law.T = Lanes::Load(springs.tension + kSprings * (first + i));
         law.Evaluate(d_d[i], d_u[i]);
         scale[i] = law.scale;
       };
@@ -73,6 +102,15 @@ struct VectorKernel {
   static void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* state,
                                      const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
                                      SpringGradientView<Real> gradient) {
+    springs.tension != nullptr
+        ? AddForcesAdjoint<true>(springs, state, force_bar, state_bar, gradient)
+        : AddForcesAdjoint<false>(springs, state, force_bar, state_bar, gradient);
+  }
+
+  template <bool kHasTension>
+  static void AddForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* state,
+                               const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
+                               SpringGradientView<Real> gradient) {
     V d[kChunk][3], u[kChunk][3], w[kChunk][3], d_d[kChunk], d_u[kChunk], d_w[kChunk];
     V along[kChunk], scale[kChunk], damping[kChunk];
     const int vectors = springs.blocks / Lanes::kBlocks;
@@ -80,14 +118,18 @@ struct VectorKernel {
       const int count = first + kChunk < vectors ? kChunk : vectors - first;
       for (int i = 0; i < count; ++i) {
         Subtract(springs, first + i, state, d[i], u[i]);
-        Lanes::Subtract(force_bar, springs.a + Lanes::kBlocks * (first + i),
-                        springs.b + kSprings * (first + i), w[i]);
+        Subtract(springs, first + i, force_bar, w[i]);
         d_d[i] = Law::Dot(d[i], d[i]);
         d_u[i] = Law::Dot(d[i], u[i]);
         d_w[i] = Law::Dot(d[i], w[i]);
       }
       for (int i = 0; i < count; ++i) {
         Law law = Parameters(springs, first + i);
+        if constexpr (kHasTension) {
+          law.T = Lanes::Load(springs.tension + kSprings * (first + i));
+          law.length_bar = Lanes::Load(gradient.length + kSprings * (first + i));
+          law.rate_bar = Lanes::Load(gradient.rate + kSprings * (first + i));
+        }
         law.Evaluate(d_d[i], d_u[i]);
         Real* k = gradient.stiffness + kSprings * (first + i);
         Real* L = gradient.rest_length + kSprings * (first + i);
@@ -162,9 +204,8 @@ struct VectorKernel {
   }
 
   static constexpr Kernel<Real> kKernel = {
-      Lanes::kName,          AddSpringForces,         AddSpringForcesAdjoint,
-      UpdateVelocities,      UpdateVelocitiesAdjoint, UpdatePositions,
-      UpdatePositionsAdjoint};
+      Lanes::kName,     MeasureSprings,          AddSpringForces, AddSpringForcesAdjoint,
+      UpdateVelocities, UpdateVelocitiesAdjoint, UpdatePositions, UpdatePositionsAdjoint};
 };
 
 }  // namespace physpring

@@ -29,12 +29,19 @@ Spring<Real> Evaluate(SpringView<Real> springs, int i, const NodeState<Real>& a,
   spring.law.k = springs.stiffness[i];
   spring.law.L = springs.rest_length[i];
   spring.law.c = springs.dashpot[i];
+  if (springs.tension != nullptr) spring.law.T = springs.tension[i];
   for (int j = 0; j < 3; ++j) {
     spring.d[j] = a.x[j] - b.x[j];
     spring.u[j] = a.v[j] - b.v[j];
   }
   spring.law.Evaluate(spring.law.Dot(spring.d, spring.d), spring.law.Dot(spring.d, spring.u));
   return spring;
+}
+
+// w = f_a - f_b
+template <class Real>
+void Subtract(const NodeForce<Real>& a, const NodeForce<Real>& b, Real* w) {
+  for (int j = 0; j < 3; ++j) w[j] = a.f[j] - b.f[j];
 }
 
 // The four springs of a block, added pairwise: a pair fits into a vector operation.
@@ -44,6 +51,21 @@ Real Sum(const Real (&value)[kSpringBlock]) {
 }
 
 }  // namespace
+
+template <class Real>
+void MeasureSprings(SpringView<Real> springs, const NodeState<Real>* state,
+                    const NodeForce<Real>* force_bar, SpringMeasures<Real> measures) {
+  for (int i = 0; i < kSpringBlock * springs.blocks; ++i) {
+    const int a = springs.a[i / kSpringBlock], b = springs.b[i];
+    const Spring<Real> spring = Evaluate(springs, i, state[a], state[b]);
+    measures.length[i] = spring.law.length;
+    measures.rate[i] = spring.law.rate;
+    if (force_bar == nullptr) continue;
+    Real w[3];
+    Subtract(force_bar[a], force_bar[b], w);
+    measures.tension_bar[i] = spring.law.TensionBar(spring.law.Dot(spring.d, w));
+  }
+}
 
 template <class Real>
 void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
@@ -75,7 +97,11 @@ void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* sta
       Spring<Real> spring = Evaluate(springs, i, state[a], state[b]);
       auto& [law, d, u] = spring;
       Real w[3];
-      for (int j = 0; j < 3; ++j) w[j] = force_bar[a].f[j] - force_bar[b].f[j];
+      Subtract(force_bar[a], force_bar[b], w);
+      if (springs.tension != nullptr) {
+        law.length_bar = gradient.length[i];
+        law.rate_bar = gradient.rate[i];
+      }
       law.Differentiate(law.Dot(d, w), &gradient.stiffness[i], &gradient.rest_length[i],
                         &gradient.dashpot[i]);
       for (int j = 0; j < 3; ++j) {
@@ -92,6 +118,10 @@ void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* sta
   }
 }
 
+template void MeasureSprings(SpringView<float>, const NodeState<float>*, const NodeForce<float>*,
+                             SpringMeasures<float>);
+template void MeasureSprings(SpringView<double>, const NodeState<double>*, const NodeForce<double>*,
+                             SpringMeasures<double>);
 template void AddSpringForces(SpringView<float>, const NodeState<float>*, NodeForce<float>*);
 template void AddSpringForces(SpringView<double>, const NodeState<double>*, NodeForce<double>*);
 template void AddSpringForcesAdjoint(SpringView<float>, const NodeState<float>*,

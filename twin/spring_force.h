@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The forces of all springs and dashpots, and their adjoint: the scalar reference. The vectorised
-// kernels (kernel_vector.h) give the same bits. The formulas are in spring_law.h.
+// The lengths and forces of all springs and dashpots, and their adjoint: the scalar reference. The
+// vectorised kernels (kernel_vector.h) give the same bits. The formulas are in spring_law.h.
 #ifndef PHYSPRING_TWIN_SPRING_FORCE_H_
 #define PHYSPRING_TWIN_SPRING_FORCE_H_
 
 #include "twin/kernel.h"
 
 namespace physpring {
+
+// Length and rate of every spring and, if there is a force_bar, d loss / d tension.
+template <class Real>
+void MeasureSprings(SpringView<Real> springs, const NodeState<Real>* state,
+                    const NodeForce<Real>* force_bar, SpringMeasures<Real> measures);
 
 // Adds every spring's force to its two nodes. `state` and `force` hold nodes, controllers and the
 // spare node.

@@ -2,7 +2,8 @@
 // The force of a spring and dashpot e = (a, b), and its adjoint, on one spring or on several at
 // once (one in each lane of a vector register):
 //   d = x_a - x_b,  l = |d|,  n = d / l,  u = v_a - v_b
-//   F = k (l - L) + c (u . n),   force on b: F n,   force on a: -F n
+//   F = k (l - L) + c (u . n) + T,   force on b: F n,   force on a: -F n
+// T is what effects add; it depends on l and u . n.
 //
 // `Lanes` says what a V is (a number, or a vector of numbers) and gives Sqrt and Inverse. It must
 // be a type of an anonymous namespace: then what is compiled from this header for one instruction
@@ -20,8 +21,11 @@ template <class Lanes>
 struct SpringLaw {
   using V = typename Lanes::V;
   V k, L, c;
+  V T = -V{};                  // -0: x + -0 is x, bit for bit
+  V length_bar{}, rate_bar{};  // d loss / d l and rate through T
 
   // Set by Evaluate.
+  V length;
   V inverse;  // 1 / l, or 0 if l < kShortest
   V rate;     // u . n, of change of the length
   V stretch;  // l - L
@@ -36,25 +40,28 @@ struct SpringLaw {
 
   // From d . d and d . u.
   void Evaluate(V d_d, V d_u) {
-    const V length = Lanes::Sqrt(d_d);
+    length = Lanes::Sqrt(d_d);
     inverse = Lanes::Inverse(length);
     rate = d_u * inverse;
     stretch = length - L;
-    scale = (k * stretch + c * rate) * inverse;
+    scale = (k * stretch + c * rate + T) * inverse;
   }
+
+  // d loss / d F, after Evaluate: with w = force_bar_a - force_bar_b the loss is -F (n . w).
+  V TensionBar(V d_w) const { return -(d_w * inverse); }
 
   // Adjoint of the force, after Evaluate: with w = force_bar_a - force_bar_b the loss is
   // -scale d . w. Adds to the derivatives with respect to the parameters.
   void Differentiate(V d_w, V* k_bar, V* L_bar, V* c_bar) {
     // loss = -F (n . w):  F_bar = -pull
     const V pull = d_w * inverse;
-    // forward: F = k stretch + c rate
+    // forward: F = k stretch + c rate + T
     *k_bar -= pull * stretch;
     *L_bar += pull * k;
     *c_bar -= pull * rate;
-    // n (k F_bar) + (I - n n^T) (F w + c F_bar u) / l, in terms of d = l n
-    damping = pull * c * inverse;
-    along = (pull * (k - scale) - damping * rate) * inverse;
+    // x_bar = n (k pull - length_bar) + (I - n n^T) (F w + (c pull - rate_bar) u) / l,  d = l n
+    damping = (pull * c - rate_bar) * inverse;
+    along = (pull * (k - scale) - length_bar - damping * rate) * inverse;
   }
 };
 

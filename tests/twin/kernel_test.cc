@@ -52,6 +52,8 @@ struct Data {
   NodeStates<Real> state, next, state_bar;
   NodeForces<Real> force, force_bar;
   SpringBlockGradient<Real> spring_bar;
+  // of each spring, random; the last three are what a kernel measures
+  std::vector<Real> tension, length_bar, rate_bar, length, rate, tension_bar;
   std::vector<Real> h_over_mass;
   NodeForces<Real> node_bar;  // mass, drag, gravity
 
@@ -63,6 +65,7 @@ struct Data {
         force(springs.spare_node + 1),
         force_bar(force),
         spring_bar(springs.size()),
+        tension(springs.size()),
         h_over_mass(springs.spare_node),
         node_bar(springs.spare_node + 2) {
     const auto fill = [&](Real* values) {
@@ -76,11 +79,27 @@ struct Data {
       fill(force_bar[i].f);
       h_over_mass[i] = static_cast<Real>((*random)(1e-4, 1e-3));
     }
+    length_bar = rate_bar = length = rate = tension_bar = tension;
+    for (std::vector<Real>* values : {&tension, &length_bar, &rate_bar}) {
+      for (Real& value : *values) value = static_cast<Real>((*random)(-1, 1));
+    }
   }
 
   NodeView<Real> Nodes() const {
     return {springs.spare_node, h_over_mass.data(), Real(1e-3), Real(0.999), {{0, 0, -0.01, 0}}};
   }
+  SpringView<Real> TenseSprings() const {
+    SpringView<Real> view = springs.View();
+    view.tension = tension.data();
+    return view;
+  }
+  SpringGradientView<Real> TenseSpringBar() {
+    SpringGradientView<Real> view = spring_bar.View();
+    view.length = length_bar.data();
+    view.rate = rate_bar.data();
+    return view;
+  }
+  SpringMeasures<Real> Measures() { return {length.data(), rate.data(), tension_bar.data()}; }
   NodeGradientView<Real> NodeBar() {
     NodeForce<Real>* end = &node_bar[springs.spare_node];
     return {node_bar.data(), end, end + 1};
@@ -101,6 +120,9 @@ void ExpectSameBits(const Data<Real>& data, const Data<Real>& reference) {
   EXPECT_TRUE(SameBits(data.spring_bar.stiffness, reference.spring_bar.stiffness));
   EXPECT_TRUE(SameBits(data.spring_bar.rest_length, reference.spring_bar.rest_length));
   EXPECT_TRUE(SameBits(data.spring_bar.dashpot, reference.spring_bar.dashpot));
+  EXPECT_TRUE(SameBits(data.length, reference.length));
+  EXPECT_TRUE(SameBits(data.rate, reference.rate));
+  EXPECT_TRUE(SameBits(data.tension_bar, reference.tension_bar));
   EXPECT_TRUE(SameBits(data.node_bar, reference.node_bar));
 }
 
@@ -152,6 +174,49 @@ TEST(Kernel, SpringForcesAdjointIsThatOfTheReference) {
                                        data->force_bar.data(), data->state_bar.data(),
                                        data->spring_bar.View());
     }
+  });
+}
+
+TEST(Kernel, MeasuresAreThoseOfTheReference) {
+  CompareKernels([](const auto& kernel, auto* data) {
+    kernel.measure_springs(data->springs.View(), data->state.data(), nullptr, data->Measures());
+  });
+  CompareKernels([](const auto& kernel, auto* data) {
+    kernel.measure_springs(data->springs.View(), data->state.data(), data->force_bar.data(),
+                           data->Measures());
+  });
+}
+
+TEST(Kernel, ForcesWithTensionAreThoseOfTheReference) {
+  CompareKernels([](const auto& kernel, auto* data) {
+    kernel.add_spring_forces(data->TenseSprings(), data->state.data(), data->force.data());
+  });
+}
+
+TEST(Kernel, ForcesAdjointWithTensionIsThatOfTheReference) {
+  CompareKernels([](const auto& kernel, auto* data) {
+    kernel.add_spring_forces_adjoint(data->TenseSprings(), data->state.data(),
+                                     data->force_bar.data(), data->state_bar.data(),
+                                     data->TenseSpringBar());
+  });
+}
+
+// Without effects the bits are those of springs alone.
+TEST(Kernel, TensionOfZeroChangesNoBit) {
+  CompareKernels([](const auto& kernel, auto* data) {
+    auto plain = *data;
+    kernel.add_spring_forces(plain.springs.View(), plain.state.data(), plain.force.data());
+    kernel.add_spring_forces_adjoint(plain.springs.View(), plain.state.data(),
+                                     plain.force_bar.data(), plain.state_bar.data(),
+                                     plain.spring_bar.View());
+    for (auto* values : {&data->tension, &data->length_bar, &data->rate_bar}) {
+      std::fill(values->begin(), values->end(), 0);
+    }
+    kernel.add_spring_forces(data->TenseSprings(), data->state.data(), data->force.data());
+    kernel.add_spring_forces_adjoint(data->TenseSprings(), data->state.data(),
+                                     data->force_bar.data(), data->state_bar.data(),
+                                     data->TenseSpringBar());
+    ExpectSameBits(*data, plain);
   });
 }
 

@@ -108,6 +108,32 @@ TEST(SpringForce, OfASpringWithoutLengthIsZero) {
   }
 }
 
+TEST(SpringForce, AddsTensionThatPulls) {
+  const Vector3d n = Vector3d(1, -2, 2) / 3;
+  const Springs<double> springs = OneSpring(0.2 * n, {0, 0, 0});
+  std::vector<double> tension(springs.blocks.size());
+  tension[0] = 7;  // of the spring; the rest is filling
+  SpringView<double> view = springs.blocks.View();
+  view.tension = tension.data();
+  NodeForces<double> force(springs.state.size());
+  AddSpringForces(view, springs.state.data(), force.data());
+  EXPECT_NEAR((F(force[0]) - 7 * n).norm(), 0, 1e-14);
+  EXPECT_EQ(F(force[1]), -F(force[0]));
+}
+
+TEST(SpringForce, MeasuresLengthRateAndWhatTensionDoes) {
+  const Vector3d n = Vector3d(1, -2, 2) / 3;
+  const Springs<double> springs = OneSpring(0.3 * n, 0.7 * n + 5 * n.unitOrthogonal());
+  const int size = springs.blocks.size();
+  std::vector<double> length(size), rate(size), tension_bar(size);
+  MeasureSprings(springs.blocks.View(), springs.state.data(), springs.force_bar.data(),
+                 {length.data(), rate.data(), tension_bar.data()});
+  EXPECT_NEAR(length[0], 0.3, 1e-15);
+  EXPECT_NEAR(rate[0], 0.7, 1e-15);
+  // the ends are pulled together: the force on the first one is T n
+  EXPECT_NEAR(tension_bar[0], n.dot(F(springs.force_bar[0]) - F(springs.force_bar[1])), 1e-15);
+}
+
 TEST(SpringForce, AddsToWhatIsThere) {
   const Springs<double> springs(RandomSystem(8, 1, 2));
   NodeForces<double> twice = springs.Forces();
