@@ -101,9 +101,8 @@ void PlanEffects(LevelPlan* plan) {
   const SpringMassSystem& trained = plan->twin->levels[plan->level].system;
   plan->setting = ApplyEffects(trained, plan->twin->gravity);
   for (const EffectValues& values : trained.effects) {
-    const bool has_force =
-        GetEffect(values.name).MakeForce(plan->system(), values.values) != nullptr;
-    if (has_force && plan->springs == SpringKind::kPlugin) {
+    const bool has_forces = GetEffect(values.name).HasForces(plan->system(), values.values);
+    if (has_forces && plan->springs == SpringKind::kPlugin) {
       plan->plugin_effects.push_back(values);
       continue;
     }

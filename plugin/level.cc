@@ -128,7 +128,7 @@ void ReadEffects(const Attributes& attributes, SpringMassSystem* system) {
 // What changes masses, rest lengths, gravity, contacts or the controllers' motion belongs there.
 void CheckEffects(const Attributes& attributes, const SpringMassSystem& system) {
   for (const EffectValues& effect : system.effects) {
-    if (GetEffect(effect.name).MakeForce(system, effect.values)) continue;
+    if (GetEffect(effect.name).HasForces(system, effect.values)) continue;
     throw Error(fmt::format("{}: attribute 'effects' has {}, expected effects that exert forces",
                             attributes.where(), Quote(effect.name)));
   }

@@ -35,9 +35,10 @@ double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes)
                   attributes.where(), substep, stable));
 }
 
-std::unique_ptr<const EffectStep<double>> MakeEffects(const SpringMassSystem& system) {
+std::unique_ptr<const EffectStep<double>> MakeEffects(const SpringMassSystem& system,
+                                                      const SpringBlocks<double>& springs) {
   if (system.effects.empty()) return nullptr;
-  return std::make_unique<const EffectStep<double>>(system, Vector::Zero());
+  return std::make_unique<const EffectStep<double>>(system, Vector::Zero(), springs.size());
 }
 
 // Between the particles only: MuJoCo finds the rest.
@@ -51,7 +52,7 @@ SpringsModel::SpringsModel(const mjModel* model, int instance)
       substep(ReadSubstep(level.system, Attributes(model, instance))),
       springs(level.system),
       particles(level.system, Nothing()),
-      effects(MakeEffects(level.system)) {}
+      effects(MakeEffects(level.system, springs)) {}
 
 const std::vector<const char*>& Springs::AttributeNames() {
   static const std::vector<const char*> names = {"nodes",
@@ -92,8 +93,8 @@ Springs::Springs(const mjModel* model, int instance)
                     "step of {} s",
                     where, springs_->substep, model->opt.timestep));
   }
-  const std::size_t size = 3 * (static_cast<std::size_t>(nodes()) + ways_.size()) + 1 +
-                           6 * (state_.size() - first_internal());
+  const std::size_t size =
+      3 * (static_cast<std::size_t>(nodes()) + ways_.size()) + 1 + internal_size();
   if (static_cast<std::size_t>(model->plugin_statenum[instance]) == size) return;
   throw Error(fmt::format("{}: the model was compiled with {} numbers of state, expected {}", where,
                           model->plugin_statenum[instance], size));
@@ -106,8 +107,8 @@ int Springs::StateSize(const mjModel* model, int instance) {
   if (!attributes.Has("effects")) return size;
   try {
     const Level level = ReadLevelWithSprings(model, instance, attributes);
-    const auto effects = MakeEffects(level.system);
-    return size + (effects ? 6 * effects->extra_records() : 0);
+    const auto effects = MakeEffects(level.system, SpringBlocks<double>(level.system));
+    return size + (effects ? kRecordSize * effects->extra_records() : 0);
   } catch (const Error&) {
     return size;  // refused, with a message, when an instance is made
   }
@@ -155,10 +156,7 @@ void Springs::ReadControllers(const mjModel* model, const mjData* data, double t
 }
 
 void Springs::ReadInternal(const double* internal) {
-  for (std::size_t i = first_internal(); i < state_.size(); ++i, internal += 6) {
-    std::copy(internal, internal + 3, state_[i].x);
-    std::copy(internal + 3, internal + 6, state_[i].v);
-  }
+  std::copy(internal, internal + internal_size(), Internal(&state_, first_internal()));
 }
 
 bool Springs::IsFinite() const {
@@ -185,9 +183,12 @@ void Springs::Substep(double time, double elapsed, double h, const Contact<doubl
   const Kernel<double>& kernel = BestKernel<double>();
   PlaceControllers(elapsed, h);
   std::fill(force_.begin(), force_.end(), NodeForce<double>{});
-  kernel.add_spring_forces(springs_->springs.View(), state_.data(), force_.data());
+  const SpringView<double> springs = springs_->springs.View();
   if (springs_->effects) {
-    springs_->effects->AddForces(time + elapsed, h, state_, &next_, &force_, &effect_buffers_);
+    springs_->effects->AddForces({kernel, springs, time + elapsed, h, state_}, &next_, &force_,
+                                 &effect_buffers_);
+  } else {
+    kernel.add_spring_forces(springs, state_.data(), force_.data());
   }
   kernel.update_velocities(view_, state_.data(), force_.data(), next_.data());
   if (!pairs.empty()) springs_->particles.Apply(state_, pairs, {}, elapsed, h, &next_, &impacts_);
@@ -252,11 +253,8 @@ void Springs::Advance(const mjModel* model, mjData* data, int instance) {
     before = std::copy(data->xpos + 3 * body, data->xpos + 3 * body + 3, before);
   }
   *before = 1;
-  double* internal = before + 1;
-  for (std::size_t i = first_internal(); is_computed_ && i < state_.size(); ++i) {
-    internal = std::copy(state_[i].x, state_[i].x + 3, internal);
-    internal = std::copy(state_[i].v, state_[i].v + 3, internal);
-  }
+  const double* internal = Internal(state_, first_internal());
+  if (is_computed_) std::copy(internal, internal + internal_size(), before + 1);
   is_computed_ = false;
 }
 

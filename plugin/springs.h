@@ -64,8 +64,9 @@ class Springs {
     bool is_mocap;
   };
 
-  // The records of a state that hold the effects' internal variables.
-  std::size_t first_internal() const { return springs_->springs.spare_node + 1; }
+  // The records of a state that hold the effects' internal variables, and how many these are.
+  int first_internal() const { return springs_->springs.spare_node + 1; }
+  std::size_t internal_size() const { return kRecordSize * (state_.size() - first_internal()); }
   int nodes() const { return springs_->level.system.node_count(); }
   void SetTimestep(double h);
   void ReadNodes(const EulerStep& step, const mjData* data, const double* lag);
@@ -86,7 +87,7 @@ class Springs {
   NodeStates<double> state_, next_;
   NodeForces<double> force_;
   Contact<double>::Impacts impacts_;
-  EffectBuffers effect_buffers_;
+  EffectBuffers<double> effect_buffers_;
   std::vector<Way> ways_;
   std::vector<double> lag_;
   bool is_computed_ = false;

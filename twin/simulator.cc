@@ -26,7 +26,7 @@ void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
     SetParameters(system, gravity_);
     return;
   }
-  effects_ = std::make_shared<const EffectStep<Real>>(system, gravity_);
+  effects_ = std::make_shared<const EffectStep<Real>>(system, gravity_, springs_.size());
   SetParameters(effects_->changed().system, effects_->changed().gravity);
 }
 
@@ -100,11 +100,12 @@ void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Re
   PlaceControllers(input, substep, state);
   NodeForces<Real>& force = workspace->force;
   std::fill(force.begin(), force.end(), NodeForce<Real>{});
-  kernel_->add_spring_forces(springs_.View(), state->data(), force.data());
-  const double h = options_.frame_time / options_.substeps;
   if (effects_) {
-    effects_->AddForces(TimeOf(input, substep), h, *state, next, &force, &workspace->effects);
+    effects_->AddForces(NowOf(input, substep, *state), next, &force, &workspace->effects);
+  } else {
+    kernel_->add_spring_forces(springs_.View(), state->data(), force.data());
   }
+  const double h = options_.frame_time / options_.substeps;
   kernel_->update_velocities(Nodes(), state->data(), force.data(), next->data());
   contact_.Apply(*state, pairs, input.geoms, substep * h, h, next, impacts);
   kernel_->update_positions(Nodes(), state->data(), next->data());
@@ -121,12 +122,13 @@ void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* w
   kernel_->update_velocities_adjoint(
       Nodes(), state.data(), next.data(), state_bar->data(), workspace->force.data(),
       {workspace->mass_gradient.data(), &workspace->drag_gradient, &workspace->gravity_gradient});
-  kernel_->add_spring_forces_adjoint(springs_.View(), state.data(), workspace->force.data(),
-                                     state_bar->data(), workspace->spring_gradient.View());
-  if (!effects_) return;
-  effects_->AddForcesAdjoint(TimeOf(workspace->input, substep),
-                             options_.frame_time / options_.substeps, state, workspace->force,
-                             state_bar, &workspace->effects);
+  if (!effects_) {
+    kernel_->add_spring_forces_adjoint(springs_.View(), state.data(), workspace->force.data(),
+                                       state_bar->data(), workspace->spring_gradient.View());
+    return;
+  }
+  effects_->AddForcesAdjoint(NowOf(workspace->input, substep, state), workspace->force, state_bar,
+                             workspace->spring_gradient.View(), &workspace->effects);
   effects_->TakeControllers(static_cast<double>(substep + 1) / options_.substeps,
                             options_.controller_velocity ? options_.frame_time : 0, state_bar,
                             &workspace->effects);

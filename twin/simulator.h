@@ -90,8 +90,9 @@ class Simulator {
   int state_size() const {
     return springs_.spare_node + 1 + (effects_ ? effects_->extra_records() : 0);
   }
-  double TimeOf(const FrameInput& input, int substep) const {
-    return input.time + substep * options_.frame_time / options_.substeps;
+  EffectSubstep<Real> NowOf(const FrameInput& input, int substep, const State& state) const {
+    const double time = input.time + substep * options_.frame_time / options_.substeps;
+    return {*kernel_, springs_.View(), time, options_.frame_time / options_.substeps, state};
   }
 
   NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
@@ -129,7 +130,7 @@ class Simulator<Real>::Workspace {
   NodeForce<Real> drag_gradient, gravity_gradient;
   ContactGradient<Real> contact_gradient;
 
-  EffectBuffers effects;
+  EffectBuffers<Real> effects;
   FrameInput input;  // of the frame that was recorded last; only effects need it
 };
 

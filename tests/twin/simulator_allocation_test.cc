@@ -96,5 +96,14 @@ TYPED_TEST(SimulatorAllocation, DoesNotGrowWithTheSubsteps) {
   EXPECT_GT(many.with_adjoint, 0);  // it is these allocations that are counted
 }
 
+TYPED_TEST(SimulatorAllocation, DoesNotGrowWithTheSubstepsWhereEffectsActAlongTheSprings) {
+  TargetedRollout crowd = Crowd();
+  crowd.system.effects = {{"viscoelastic", Eigen::Vector2d(0.5, 0.02)}};
+  const Count few = CountAllocations<TypeParam>(crowd, 10);
+  const Count many = CountAllocations<TypeParam>(crowd, 100);
+  EXPECT_EQ(few.forward, many.forward);
+  EXPECT_EQ(few.with_adjoint, many.with_adjoint);
+}
+
 }  // namespace
 }  // namespace physpring

@@ -12,38 +12,39 @@
 namespace physpring {
 namespace {
 
+template <class Real>
 class DryFrictionLaw {
  public:
+  static constexpr int kValues = 1;
   static constexpr bool kHasInternal = true;
 
-  DryFrictionLaw(const Eigen::VectorXd& values, const Instant& instant)
-      : slip_strain_(values[0]), step_(instant.step) {}
+  DryFrictionLaw(const Eigen::VectorXd& values, double /*time*/, double step)
+      : slip_strain_(static_cast<Real>(values[0])), step_(static_cast<Real>(step)) {}
 
-  double Tension(const SpringMoment& s, double* z) const {
-    const double slip = slip_strain_ * s.rest_length;
-    *z = std::clamp(*z + step_ * s.rate, -slip, slip);
+  Real Tension(const SpringMoment<Real>& s, Real* z) const {
+    const Real slip = slip_strain_ * s.rest_length;
+    *z = std::min(std::max(*z + step_ * s.rate, -slip), slip);
     return s.stiffness * *z;
   }
 
-  void TensionAdjoint(const SpringMoment& s, double z, double tension_bar, double* z_bar,
-                      SpringMoment* bar, Eigen::VectorXd* values_bar) const {
-    double after = z;
+  void TensionAdjoint(const SpringMoment<Real>& s, Real z, Real tension_bar, Real* z_bar,
+                      SpringMoment<Real>* bar, Real* values_bar) const {
+    Real after = z;
     Tension(s, &after);
     bar->stiffness += tension_bar * after;
     *z_bar += tension_bar * s.stiffness;
-    const double free = z + step_ * s.rate;
-    if (after == free) {
-      bar->rate += step_ * *z_bar;
-      return;
-    }
-    const double sign = free > after ? 1 : -1;
-    (*values_bar)[0] += sign * s.rest_length * *z_bar;
-    bar->rest_length += sign * slip_strain_ * *z_bar;
-    *z_bar = 0;
+    // forward: z' = z + h rate, or +-phi L if it slips
+    const Real free = z + step_ * s.rate;
+    const Real slip_bar = after == free ? 0 : *z_bar;
+    const Real limit_bar = free > after ? slip_bar : -slip_bar;
+    values_bar[0] += limit_bar * s.rest_length;
+    bar->rest_length += limit_bar * slip_strain_;
+    *z_bar -= slip_bar;
+    bar->rate += step_ * *z_bar;
   }
 
  private:
-  double slip_strain_, step_;
+  Real slip_strain_, step_;
 };
 
 class DryFriction : public Effect {
@@ -55,9 +56,8 @@ class DryFriction : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Constant(1, 1e-3), Eigen::VectorXd::Constant(1, 0.02)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<SpringEffectForce<DryFrictionLaw>>(system, values);
+  std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const override {
+    return std::make_unique<LawTension<DryFrictionLaw>>(values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     if (!values.isZero()) bound->stiffness *= 2;

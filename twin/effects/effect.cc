@@ -13,6 +13,12 @@ std::unique_ptr<EffectForce> Effect::MakeForce(const SpringMassSystem&,
   return nullptr;
 }
 
+std::unique_ptr<SpringTension> Effect::MakeTension(const Eigen::VectorXd&) const { return nullptr; }
+
+bool Effect::HasForces(const SpringMassSystem& system, const Eigen::VectorXd& values) const {
+  return MakeTension(values) != nullptr || MakeForce(system, values) != nullptr;
+}
+
 void Effect::Stiffen(const Eigen::VectorXd&, SpringMassSystem*) const {}
 
 int Effect::value_count() const {

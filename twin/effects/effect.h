@@ -4,10 +4,11 @@
 // values mean is said here, once for each effect, in a file of its own. An effect may
 //   change the setting before the simulation (masses, rest lengths, gravity, contact coefficients),
 //   delay the controllers' motion,
-//   add forces in each sub-step, from positions, velocities, time and internal variables of its
-//   own, which start at 0 and are part of the simulator's state.
-// Each has its adjoint. Values of 0 change nothing. Effects are computed in double precision also
-// where the simulator is not. twin/effects/registry.h lists them.
+//   add forces on the nodes in each sub-step, from positions, velocities, time and internal
+//   variables of its own, which start at 0 and are part of the simulator's state,
+//   add tension to the springs in each sub-step, in the same way (spring_tension.h).
+// Each has its adjoint. Values of 0 change nothing. Forces on nodes are computed in double
+// precision also where the simulator is not. twin/effects/registry.h lists the effects.
 #ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_H_
 #define PHYSPRING_TWIN_EFFECTS_EFFECT_H_
 
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "twin/effects/effect_mjcf.h"
+#include "twin/effects/spring_tension.h"
 #include "twin/spring_mass_system.h"
 #include "twin/system_gradient.h"
 
@@ -52,7 +54,7 @@ struct InstantGradient {
   SystemGradient* parameters;  // of the system that it acts on
 };
 
-// The forces of one effect with given values on one system, which must outlive it.
+// The forces on nodes of one effect with given values on one system, which must outlive it.
 class EffectForce {
  public:
   virtual ~EffectForce() = default;
@@ -95,9 +97,13 @@ class Effect {
   // How much later than recorded the controllers move, s. If `delays`, it is the first value.
   virtual bool delays() const { return false; }
 
-  // Nothing if the effect has no forces.
+  // Nothing if the effect has no forces of its own on nodes.
   virtual std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                                  const Eigen::VectorXd& values) const;
+  // Nothing if the effect does not act along the springs.
+  virtual std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const;
+  // Whether it has one of the two.
+  bool HasForces(const SpringMassSystem& system, const Eigen::VectorXd& values) const;
 
   // Makes the springs of `bound` so stiff, or adds springs to it, that the sub-steps that are
   // stable for it are stable for the system with the effect (twin/stability.h).

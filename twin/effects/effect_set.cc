@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/effects/effect_set.h"
 
+#include <algorithm>
+
 #include "twin/effects/registry.h"
 
 namespace physpring {
@@ -41,6 +43,11 @@ EffectSet::EffectSet(const SpringMassSystem& system, const Eigen::Vector3d& grav
     forces_.push_back(effects_[i]->MakeForce(changed().system, system.effects[i].values));
     offset_.push_back(offset_.back() + (forces_[i] ? forces_[i]->internal_size() : 0));
   }
+}
+
+bool EffectSet::has_forces() const {
+  return std::any_of(forces_.begin(), forces_.end(),
+                     [](const auto& force) { return force != nullptr; });
 }
 
 void EffectSet::AddForces(const Instant& instant, Eigen::VectorXd* internal, Points* force) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All effects of a system together, bound to it: what the simulator calls.
+// All effects of a system together, bound to it: what they change and their forces on nodes.
 #ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_SET_H_
 #define PHYSPRING_TWIN_EFFECTS_EFFECT_SET_H_
 
@@ -28,7 +28,9 @@ class EffectSet {
   const Setting& changed() const { return settings_.back(); }
   int internal_size() const { return offset_.back(); }
 
-  // Forces of all effects on the changed system; see EffectForce.
+  // Whether there are any on nodes.
+  bool has_forces() const;
+  // Forces of all effects on nodes of the changed system; see EffectForce.
   void AddForces(const Instant& instant, Eigen::VectorXd* internal, Points* force) const;
   // Adds d loss / d state to x_bar and v_bar, and to the effects of `gradient`, which is with
   // respect to the changed system.

@@ -1,32 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/effects/effect_step.h"
 
+#include <algorithm>
+
 namespace physpring {
-namespace {
-
-// The internal variables in the records from `first` on.
-template <class Real>
-void UnpackInternal(const NodeStates<Real>& state, int first, Eigen::VectorXd* internal) {
-  for (Eigen::Index i = 0; i < internal->size(); ++i) {
-    const NodeState<Real>& record = state[static_cast<std::size_t>(first + i / 6)];
-    const Eigen::Index entry = i % 6;
-    (*internal)[i] = static_cast<double>(entry < 3 ? record.x[entry] : record.v[entry - 3]);
-  }
-}
 
 template <class Real>
-void PackInternal(const Eigen::VectorXd& internal, int first, NodeStates<Real>* state) {
-  for (Eigen::Index i = 0; i < internal.size(); ++i) {
-    NodeState<Real>& record = (*state)[static_cast<std::size_t>(first + i / 6)];
-    const Eigen::Index entry = i % 6;
-    (entry < 3 ? record.x[entry] : record.v[entry - 3]) = static_cast<Real>(internal[i]);
-  }
-}
-
-}  // namespace
-
-template <class Real>
-void EffectStep<Real>::Unpack(const State& state, EffectBuffers* buffers) const {
+void EffectStep<Real>::Unpack(const State& state, EffectBuffers<Real>* buffers) const {
   buffers->x.resize(3, columns_);
   buffers->v.resize(3, columns_);
   double *x = buffers->x.data(), *v = buffers->v.data();
@@ -36,58 +16,87 @@ void EffectStep<Real>::Unpack(const State& state, EffectBuffers* buffers) const 
       v[3 * i + j] = static_cast<double>(state[i].v[j]);
     }
   }
-  buffers->internal.resize(effects_.internal_size());
-  UnpackInternal(state, columns_ + 1, &buffers->internal);
+  UnpackInternal(state, &buffers->internal);
 }
 
 template <class Real>
-void EffectStep<Real>::AddForces(double time, double step, const State& state, State* next,
-                                 NodeForces<Real>* force, EffectBuffers* buffers) const {
-  Unpack(state, buffers);
+void EffectStep<Real>::UnpackInternal(const State& state, Eigen::VectorXd* internal) const {
+  const Real* from = Internal(state, tensions_.end_record());
+  internal->resize(effects_.internal_size());
+  std::copy(from, from + internal->size(), internal->begin());
+}
+
+template <class Real>
+void EffectStep<Real>::PackInternal(const Eigen::VectorXd& internal, State* state) const {
+  Real* to = Internal(state, tensions_.end_record());
+  for (double value : internal) *to++ = static_cast<Real>(value);
+}
+
+template <class Real>
+void EffectStep<Real>::AddForces(const EffectSubstep<Real>& now, State* next,
+                                 NodeForces<Real>* force, EffectBuffers<Real>* buffers) const {
+  tensions_.AddForces(now, next, force, &buffers->tension);
+  if (effects_.has_forces()) AddNodeForces(now, next, force, buffers);
+}
+
+template <class Real>
+void EffectStep<Real>::AddNodeForces(const EffectSubstep<Real>& now, State* next,
+                                     NodeForces<Real>* force, EffectBuffers<Real>* buffers) const {
+  Unpack(now.state, buffers);
   buffers->force.setZero(3, columns_);
-  effects_.AddForces({time, step, buffers->x, buffers->v}, &buffers->internal, &buffers->force);
+  effects_.AddForces({now.time, now.step, buffers->x, buffers->v}, &buffers->internal,
+                     &buffers->force);
   const double* added = buffers->force.data();
   for (int i = 0; i < nodes_; ++i) {
     for (int j = 0; j < 3; ++j) (*force)[i].f[j] += static_cast<Real>(added[3 * i + j]);
   }
-  PackInternal(buffers->internal, columns_ + 1, next);
+  PackInternal(buffers->internal, next);
 }
 
 template <class Real>
-void EffectStep<Real>::ClearGradient(EffectBuffers* buffers) const {
+void EffectStep<Real>::ClearGradient(EffectBuffers<Real>* buffers) const {
+  tensions_.ClearGradient(&buffers->tension);
   buffers->gradient.assign(1, SystemGradient(changed().system));
   buffers->start_bar.setZero(3, columns_ - nodes_);
   buffers->end_bar.setZero(3, columns_ - nodes_);
 }
 
 template <class Real>
-void EffectStep<Real>::AddForcesAdjoint(double time, double step, const State& state,
+void EffectStep<Real>::AddForcesAdjoint(const EffectSubstep<Real>& now,
                                         const NodeForces<Real>& force_bar, State* state_bar,
-                                        EffectBuffers* buffers) const {
-  Unpack(state, buffers);
+                                        SpringGradientView<Real> gradient,
+                                        EffectBuffers<Real>* buffers) const {
+  tensions_.AddForcesAdjoint(now, force_bar, state_bar, gradient, &buffers->tension);
+  if (effects_.has_forces()) AddNodeForcesAdjoint(now, force_bar, state_bar, buffers);
+}
+
+template <class Real>
+void EffectStep<Real>::AddNodeForcesAdjoint(const EffectSubstep<Real>& now,
+                                            const NodeForces<Real>& force_bar, State* state_bar,
+                                            EffectBuffers<Real>* buffers) const {
+  Unpack(now.state, buffers);
   buffers->force.setZero(3, columns_);
   for (int i = 0; i < nodes_; ++i) {
     for (int j = 0; j < 3; ++j) buffers->force(j, i) = static_cast<double>(force_bar[i].f[j]);
   }
-  buffers->internal_bar.resize(effects_.internal_size());
-  UnpackInternal(*state_bar, columns_ + 1, &buffers->internal_bar);
+  UnpackInternal(*state_bar, &buffers->internal_bar);
   buffers->x_bar.setZero(3, columns_);
   buffers->v_bar.setZero(3, columns_);
-  effects_.AddForcesAdjoint({time, step, buffers->x, buffers->v}, buffers->internal, buffers->force,
-                            &buffers->internal_bar, &buffers->x_bar, &buffers->v_bar,
-                            buffers->gradient.data());
+  effects_.AddForcesAdjoint({now.time, now.step, buffers->x, buffers->v}, buffers->internal,
+                            buffers->force, &buffers->internal_bar, &buffers->x_bar,
+                            &buffers->v_bar, buffers->gradient.data());
   for (int i = 0; i < columns_; ++i) {
     for (int j = 0; j < 3; ++j) {
       (*state_bar)[i].x[j] += static_cast<Real>(buffers->x_bar(j, i));
       (*state_bar)[i].v[j] += static_cast<Real>(buffers->v_bar(j, i));
     }
   }
-  PackInternal(buffers->internal_bar, columns_ + 1, state_bar);
+  PackInternal(buffers->internal_bar, state_bar);
 }
 
 template <class Real>
 void EffectStep<Real>::TakeControllers(double fraction, double frame_time, State* state_bar,
-                                       EffectBuffers* buffers) const {
+                                       EffectBuffers<Real>* buffers) const {
   const double per_time = frame_time > 0 ? 1 / frame_time : 0;
   for (int i = nodes_; i < columns_; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -102,8 +111,9 @@ void EffectStep<Real>::TakeControllers(double fraction, double frame_time, State
 
 template <class Real>
 void EffectStep<Real>::FinishGradient(const Points& start_rate, const Points& end_rate,
-                                      const EffectBuffers& buffers,
+                                      const EffectBuffers<Real>& buffers,
                                       SystemGradient* gradient) const {
+  tensions_.AddGradient(buffers.tension, gradient);
   *gradient += buffers.gradient[0];
   double delay_bar = 0;
   if (start_rate.cols() == buffers.start_bar.cols()) {

@@ -8,31 +8,34 @@
 namespace physpring {
 namespace {
 
+template <class Real>
 class StiffeningLaw {
  public:
+  static constexpr int kValues = 1;
   static constexpr bool kHasInternal = false;
 
-  StiffeningLaw(const Eigen::VectorXd& values, const Instant&) : ratio_(values[0]) {}
+  StiffeningLaw(const Eigen::VectorXd& values, double /*time*/, double /*step*/)
+      : ratio_(static_cast<Real>(values[0])) {}
 
-  double Tension(const SpringMoment& s, double*) const {
-    const double strain = (s.length - s.rest_length) / s.rest_length;
+  Real Tension(const SpringMoment<Real>& s, Real*) const {
+    const Real strain = (s.length - s.rest_length) / s.rest_length;
     return ratio_ * s.stiffness * s.rest_length * strain * strain * strain;
   }
-  void TensionAdjoint(const SpringMoment& s, double, double tension_bar, double*, SpringMoment* bar,
-                      Eigen::VectorXd* values_bar) const {
-    const double strain = (s.length - s.rest_length) / s.rest_length;
-    const double cube = strain * strain * strain;
-    (*values_bar)[0] += tension_bar * s.stiffness * s.rest_length * cube;
+  void TensionAdjoint(const SpringMoment<Real>& s, Real, Real tension_bar, Real*,
+                      SpringMoment<Real>* bar, Real* values_bar) const {
+    const Real strain = (s.length - s.rest_length) / s.rest_length;
+    const Real cube = strain * strain * strain;
+    values_bar[0] += tension_bar * s.stiffness * s.rest_length * cube;
     bar->stiffness += tension_bar * ratio_ * s.rest_length * cube;
     // forward: strain = l / L - 1
-    const double slope = tension_bar * ratio_ * s.stiffness * 3 * strain * strain;
+    const Real slope = tension_bar * ratio_ * s.stiffness * 3 * strain * strain;
     bar->length += slope;
     bar->rest_length +=
         tension_bar * ratio_ * s.stiffness * cube - slope * s.length / s.rest_length;
   }
 
  private:
-  double ratio_;  // alpha
+  Real ratio_;  // alpha
 };
 
 class Stiffening : public Effect {
@@ -44,9 +47,8 @@ class Stiffening : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Constant(1, 1), Eigen::VectorXd::Constant(1, 10)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<SpringEffectForce<StiffeningLaw>>(system, values);
+  std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const override {
+    return std::make_unique<LawTension<StiffeningLaw>>(values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     // at the strains that a soft body lives in

@@ -10,28 +10,31 @@ namespace {
 
 constexpr double kLeast = -0.9;  // of a t
 
+template <class Real>
 class StiffnessDriftLaw {
  public:
+  static constexpr int kValues = 1;
   static constexpr bool kHasInternal = false;
 
-  StiffnessDriftLaw(const Eigen::VectorXd& values, const Instant& instant)
-      : time_(instant.time), drift_(std::max(kLeast, values[0] * instant.time)) {}
+  StiffnessDriftLaw(const Eigen::VectorXd& values, double time, double /*step*/)
+      : drift_(static_cast<Real>(std::max(kLeast, values[0] * time))),
+        drift_slope_(values[0] * time > kLeast ? static_cast<Real>(time) : 0) {}
 
-  double Tension(const SpringMoment& s, double*) const {
+  Real Tension(const SpringMoment<Real>& s, Real*) const {
     return drift_ * s.stiffness * (s.length - s.rest_length);
   }
-  void TensionAdjoint(const SpringMoment& s, double, double tension_bar, double*, SpringMoment* bar,
-                      Eigen::VectorXd* values_bar) const {
-    const double stretch = s.length - s.rest_length;
-    if (drift_ > kLeast) (*values_bar)[0] += tension_bar * time_ * s.stiffness * stretch;
+  void TensionAdjoint(const SpringMoment<Real>& s, Real, Real tension_bar, Real*,
+                      SpringMoment<Real>* bar, Real* values_bar) const {
+    const Real stretch = s.length - s.rest_length;
+    values_bar[0] += tension_bar * drift_slope_ * s.stiffness * stretch;
     bar->stiffness += tension_bar * drift_ * stretch;
     bar->length += tension_bar * drift_ * s.stiffness;
     bar->rest_length -= tension_bar * drift_ * s.stiffness;
   }
 
  private:
-  double time_;
-  double drift_;  // a t
+  Real drift_;        // a t
+  Real drift_slope_;  // of it with a, s
 };
 
 class StiffnessDrift : public Effect {
@@ -43,9 +46,8 @@ class StiffnessDrift : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Zero(1)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<SpringEffectForce<StiffnessDriftLaw>>(system, values);
+  std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const override {
+    return std::make_unique<LawTension<StiffnessDriftLaw>>(values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     constexpr double kDuration = 10;  // s, of a long recording

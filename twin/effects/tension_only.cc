@@ -3,33 +3,42 @@
 // away. s = 1 is a string that goes slack, in MuJoCo springlength="0 L".
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "twin/effects/spring_effect.h"
 
 namespace physpring {
 namespace {
 
+template <class Real>
 class TensionOnlyLaw {
  public:
+  static constexpr int kValues = 1;
   static constexpr bool kHasInternal = false;
 
-  TensionOnlyLaw(const Eigen::VectorXd& values, const Instant&) : slack_share_(values[0]) {}
+  TensionOnlyLaw(const Eigen::VectorXd& values, double /*time*/, double /*step*/)
+      : slack_share_(static_cast<Real>(values[0])) {}
 
-  double Tension(const SpringMoment& s, double*) const {
-    if (s.length >= s.rest_length) return 0;
-    return -slack_share_ * s.stiffness * (s.length - s.rest_length);
+  Real Tension(const SpringMoment<Real>& s, Real*) const {
+    return slack_share_ * s.stiffness * Slack(s);
   }
-  void TensionAdjoint(const SpringMoment& s, double, double tension_bar, double*, SpringMoment* bar,
-                      Eigen::VectorXd* values_bar) const {
-    if (s.length >= s.rest_length) return;
-    const double stretch = s.length - s.rest_length;
-    (*values_bar)[0] -= tension_bar * s.stiffness * stretch;
-    bar->stiffness -= tension_bar * slack_share_ * stretch;
-    bar->length -= tension_bar * slack_share_ * s.stiffness;
-    bar->rest_length += tension_bar * slack_share_ * s.stiffness;
+  void TensionAdjoint(const SpringMoment<Real>& s, Real, Real tension_bar, Real*,
+                      SpringMoment<Real>* bar, Real* values_bar) const {
+    values_bar[0] += tension_bar * s.stiffness * Slack(s);
+    bar->stiffness += tension_bar * slack_share_ * Slack(s);
+    // forward: slack = L - l if that is positive
+    const Real slack_bar = Slack(s) > 0 ? tension_bar * slack_share_ * s.stiffness : 0;
+    bar->length -= slack_bar;
+    bar->rest_length += slack_bar;
   }
 
  private:
-  double slack_share_;
+  // How much shorter than at rest.
+  static Real Slack(const SpringMoment<Real>& s) {
+    return std::max(s.rest_length - s.length, Real(0));
+  }
+
+  Real slack_share_;
 };
 
 class TensionOnly : public Effect {
@@ -39,9 +48,8 @@ class TensionOnly : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 0.8)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<SpringEffectForce<TensionOnlyLaw>>(system, values);
+  std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const override {
+    return std::make_unique<LawTension<TensionOnlyLaw>>(values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
     if (values[0] < 1) {

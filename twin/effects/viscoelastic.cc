@@ -9,39 +9,41 @@
 namespace physpring {
 namespace {
 
+template <class Real>
 class ViscoelasticLaw {
  public:
+  static constexpr int kValues = 2;
   static constexpr bool kHasInternal = true;
 
-  ViscoelasticLaw(const Eigen::VectorXd& values, const Instant& instant)
-      : ratio_(values[0]),
-        time_(values[1]),
-        step_(instant.step),
-        decay_(time_ > 0 ? std::exp(-step_ / time_) : 0) {}
+  ViscoelasticLaw(const Eigen::VectorXd& values, double /*time*/, double step)
+      : ratio_(static_cast<Real>(values[0])),
+        step_(static_cast<Real>(step)),
+        loss_(values[1] > 0 ? static_cast<Real>(-std::expm1(-step / values[1])) : 1),
+        decay_slope_(values[1] > 0 ? static_cast<Real>(step / (values[1] * values[1])) : 0) {}
 
-  double Tension(const SpringMoment& s, double* z) const {
-    *z = (*z + step_ * s.rate) * decay_;
+  Real Tension(const SpringMoment<Real>& s, Real* z) const {
+    const Real free = *z + step_ * s.rate;
+    *z = free - loss_ * free;
     return ratio_ * s.stiffness * *z;
   }
 
-  void TensionAdjoint(const SpringMoment& s, double z, double tension_bar, double* z_bar,
-                      SpringMoment* bar, Eigen::VectorXd* values_bar) const {
-    double after = z;
+  void TensionAdjoint(const SpringMoment<Real>& s, Real z, Real tension_bar, Real* z_bar,
+                      SpringMoment<Real>* bar, Real* values_bar) const {
+    Real after = z;
     Tension(s, &after);
-    (*values_bar)[0] += tension_bar * s.stiffness * after;
+    values_bar[0] += tension_bar * s.stiffness * after;
     bar->stiffness += tension_bar * ratio_ * after;
     *z_bar += tension_bar * ratio_ * s.stiffness;
     // forward: z' = (z + h rate) exp(-h / tau)
-    if (time_ > 0) {
-      (*values_bar)[1] += *z_bar * after * step_ / (time_ * time_);
-    }
-    *z_bar *= decay_;
+    values_bar[1] += *z_bar * after * decay_slope_;
+    *z_bar -= loss_ * *z_bar;
     bar->rate += step_ * *z_bar;
   }
 
  private:
-  double ratio_, time_, step_;
-  double decay_;  // without a time there is no memory
+  Real ratio_, step_;
+  Real loss_;         // 1 - exp(-h / tau), which has more digits in float; 1 without a memory
+  Real decay_slope_;  // h / tau^2: of exp(-h / tau) with tau, relative
 };
 
 class Viscoelastic : public Effect {
@@ -54,9 +56,8 @@ class Viscoelastic : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::Vector2d(0.1, 0.03), Eigen::Vector2d(0.1, 0.2), Eigen::Vector2d(0.1, 1)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<SpringEffectForce<ViscoelasticLaw>>(system, values);
+  std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const override {
+    return std::make_unique<LawTension<ViscoelasticLaw>>(values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     bound->stiffness *= 1 + values[0];

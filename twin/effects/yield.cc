@@ -6,50 +6,51 @@
 // length. If both are 0 nothing yields.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "twin/effects/spring_effect.h"
 
 namespace physpring {
 namespace {
 
+template <class Real>
 class YieldLaw {
  public:
+  static constexpr int kValues = 2;
   static constexpr bool kHasInternal = true;
 
-  YieldLaw(const Eigen::VectorXd& values, const Instant&)
-      : stretch_(values[0]), strain_(values[1]) {}
+  YieldLaw(const Eigen::VectorXd& values, double /*time*/, double /*step*/)
+      : stretch_(values.isZero(0) ? std::numeric_limits<Real>::infinity()
+                                  : static_cast<Real>(values[0])),
+        strain_(static_cast<Real>(values[1])) {}
 
-  double Tension(const SpringMoment& s, double* p) const {
-    if (stretch_ == 0 && strain_ == 0) return 0;
-    const double stretch = s.length - s.rest_length;
-    const double threshold = stretch_ + strain_ * s.rest_length;
-    if (stretch - *p > threshold) {
-      *p = stretch - threshold;
-    } else if (stretch - *p < -threshold) {
-      *p = stretch + threshold;
-    }
+  Real Tension(const SpringMoment<Real>& s, Real* p) const {
+    const Real stretch = s.length - s.rest_length;
+    const Real threshold = stretch_ + strain_ * s.rest_length;
+    *p = std::min(std::max(*p, stretch - threshold), stretch + threshold);
     return -s.stiffness * *p;
   }
 
-  void TensionAdjoint(const SpringMoment& s, double p, double tension_bar, double* p_bar,
-                      SpringMoment* bar, Eigen::VectorXd* values_bar) const {
-    if (stretch_ == 0 && strain_ == 0) return;
-    double after = p;
+  void TensionAdjoint(const SpringMoment<Real>& s, Real p, Real tension_bar, Real* p_bar,
+                      SpringMoment<Real>* bar, Real* values_bar) const {
+    Real after = p;
     Tension(s, &after);
     // forward: T = -k p
     bar->stiffness -= tension_bar * after;
     *p_bar -= tension_bar * s.stiffness;
-    if (after == p) return;
-    // forward: p = l - L -+ (y_m + y L)
-    const double sign = after > p ? -1 : 1;
-    bar->length += *p_bar;
-    bar->rest_length += (sign * strain_ - 1) * *p_bar;
-    (*values_bar)[0] += sign * *p_bar;
-    (*values_bar)[1] += sign * s.rest_length * *p_bar;
-    *p_bar = 0;
+    // forward: p = l - L -+ (y_m + y L), if it yields
+    const Real yield_bar = after == p ? 0 : *p_bar;
+    const Real threshold_bar = after > p ? -yield_bar : yield_bar;
+    bar->length += yield_bar;
+    bar->rest_length += strain_ * threshold_bar - yield_bar;
+    values_bar[0] += threshold_bar;
+    values_bar[1] += threshold_bar * s.rest_length;
+    *p_bar -= yield_bar;
   }
 
  private:
-  double stretch_, strain_;  // where it yields
+  Real stretch_, strain_;  // where it yields
 };
 
 class Yield : public Effect {
@@ -69,9 +70,8 @@ class Yield : public Effect {
     }
     return starts;
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<SpringEffectForce<YieldLaw>>(system, values);
+  std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const override {
+    return std::make_unique<LawTension<YieldLaw>>(values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
     EffectMjcf mjcf{EffectMjcf::Carrier::kTendon, {}, {}, ""};

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The springs of a system with its effects along them, inside the simulator: between the kernel,
+// which knows geometry, and the effects, which know tensions (spring_tension.h). The internal
+// variables of an effect stand in the state in records of their own, eight to a record, in the
+// order of the springs in the kernel.
+#ifndef PHYSPRING_TWIN_EFFECTS_TENSION_STEP_H_
+#define PHYSPRING_TWIN_EFFECTS_TENSION_STEP_H_
+
+#include <memory>
+#include <vector>
+
+#include "twin/effects/spring_tension.h"
+#include "twin/kernel.h"
+#include "twin/system_gradient.h"
+
+namespace physpring {
+
+// The internal variables in the records of a state from `record` on, as one array.
+inline constexpr int kRecordSize = 8;
+static_assert(sizeof(NodeState<float>) == kRecordSize * sizeof(float));
+static_assert(sizeof(NodeState<double>) == kRecordSize * sizeof(double));
+template <class Real>
+Real* Internal(NodeStates<Real>* state, int record) {
+  return reinterpret_cast<Real*>(state->data() + record);
+}
+template <class Real>
+const Real* Internal(const NodeStates<Real>& state, int record) {
+  return reinterpret_cast<const Real*>(state.data() + record);
+}
+
+// A sub-step in which effects act, and what computes its springs.
+template <class Real>
+struct EffectSubstep {
+  const Kernel<Real>& kernel;
+  SpringView<Real> springs;
+  double time;  // s since the start of the recording
+  double step;  // its length, s
+  const NodeStates<Real>& state;
+};
+
+// What sub-steps work in, and the sums of a frame's adjoint.
+template <class Real>
+struct TensionBuffers {
+  std::vector<Real> length, rate, tension, tension_bar, length_bar, rate_bar;  // (springs)
+  std::vector<std::vector<Real>> values_bar;  // of each effect, see TensionGradient
+};
+
+template <class Real>
+class TensionStep {
+ public:
+  using State = NodeStates<Real>;
+
+  // `springs`: how many there are in the kernel's order, fillings included. The internal variables
+  // begin at the record `first_record` of a state.
+  TensionStep(const SpringMassSystem& system, int springs, int first_record);
+
+  // The record of a state behind the internal variables.
+  int end_record() const { return end_record_; }
+
+  // Adds the forces of the springs at `now`, and gives `next` the internal variables.
+  void AddForces(const EffectSubstep<Real>& now, State* next, NodeForces<Real>* force,
+                 TensionBuffers<Real>* buffers) const;
+
+  void ClearGradient(TensionBuffers<Real>* buffers) const;
+  // Adjoint of AddForces, given force_bar: internal variables of state_bar in d loss / d those
+  // after, out before.
+  void AddForcesAdjoint(const EffectSubstep<Real>& now, const NodeForces<Real>& force_bar,
+                        State* state_bar, SpringGradientView<Real> gradient,
+                        TensionBuffers<Real>* buffers) const;
+  // Adds the sums of a frame to the effects of `gradient`.
+  void AddGradient(const TensionBuffers<Real>& buffers, SystemGradient* gradient) const;
+
+ private:
+  struct Tension {
+    std::size_t effect;  // of the system
+    Eigen::Index values;
+    std::unique_ptr<const SpringTension> law;
+    int record;  // where its internal variables begin
+  };
+
+  SpringMoments<Real> Measure(const EffectSubstep<Real>& now, const NodeForce<Real>* force_bar,
+                              TensionBuffers<Real>* buffers) const;
+
+  int springs_, end_record_;
+  std::vector<Tension> tensions_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_EFFECTS_TENSION_STEP_H_
