@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a sub-step, forward and with its gradient, by precision, kernel and size:
 //   substep_benchmark --benchmark_filter=gradient/double --benchmark_repetitions=9
-// Counter `substep`: CPU time of one. `free`: without a ground, forward. A rollout that does not
-// fit into memory pays `forward` once more for its gradient.
+// Counter `substep`: CPU time of one. `free`: without a ground, forward. `forward_viscoelastic` and
+// `gradient_viscoelastic`: with an effect along the springs. A rollout that does not fit into
+// memory pays `forward` once more for its gradient.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -16,17 +17,30 @@ namespace {
 
 constexpr int kSubsteps = 100;  // a frame
 
+struct Case {
+  int nodes, springs;
+  bool ground, viscoelastic;
+
+  SpringMassSystem System() const {
+    SpringMassSystem system = MakeRope(nodes, springs);
+    if (viscoelastic) system.effects = {{"viscoelastic", Eigen::Vector2d(0.5, 0.02)}};
+    return system;
+  }
+  Environment Surroundings() const {
+    return ground ? Environment{.ground = Eigen::Vector4d(0, 0, 1, 0)} : Environment();
+  }
+};
+
 template <class Real>
 class Rope {
  public:
-  Rope(int nodes, int springs, bool ground, const Kernel<Real>& kernel)
-      : system_(MakeRope(nodes, springs)),
-        simulator_(system_,
-                   ground ? Environment{.ground = Eigen::Vector4d(0, 0, 1, 0)} : Environment(),
+  Rope(const Case& rope, const Kernel<Real>& kernel)
+      : system_(rope.System()),
+        simulator_(system_, rope.Surroundings(),
                    {.frame_time = kSubsteps / 20010.0, .substeps = kSubsteps}, kernel),
         workspace_(simulator_),
         gradient_(system_),
-        start_(simulator_.MakeState(system_.position, Points::Zero(3, nodes))) {
+        start_(simulator_.MakeState(system_.position, Points::Zero(3, rope.nodes))) {
     input_.controllers_start = input_.controllers_end = Points(3, 0);
   }
 
@@ -52,9 +66,9 @@ class Rope {
 };
 
 template <class Real>
-void Measure(benchmark::State& state, void (Rope<Real>::*function)(), bool ground, int nodes,
-             int springs, const Kernel<Real>& kernel) {
-  Rope<Real> rope(nodes, springs, ground, kernel);
+void Measure(benchmark::State& state, void (Rope<Real>::*function)(), const Case& measured,
+             const Kernel<Real>& kernel) {
+  Rope<Real> rope(measured, kernel);
   for (auto _ : state) (rope.*function)();
   state.counters["substep"] = benchmark::Counter(
       kSubsteps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -68,14 +82,17 @@ void Register(const char* precision) {
     for (const char* name : {"scalar", "avx2"}) {
       const Kernel<Real>* kernel = FindKernel<Real>(name);
       if (kernel == nullptr) continue;
-      const auto add = [&](const char* what, void (Rope<Real>::*function)(), bool ground) {
+      const auto add = [&](const char* what, void (Rope<Real>::*function)(), bool ground,
+                           bool viscoelastic) {
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}/{}/{}", what, precision, name, nodes, springs).c_str(),
-            Measure<Real>, function, ground, nodes, springs, *kernel);
+            Measure<Real>, function, Case{nodes, springs, ground, viscoelastic}, *kernel);
       };
-      add("free", &Rope<Real>::Forward, false);
-      add("forward", &Rope<Real>::Forward, true);
-      add("gradient", &Rope<Real>::Gradient, true);
+      add("free", &Rope<Real>::Forward, false, false);
+      add("forward", &Rope<Real>::Forward, true, false);
+      add("gradient", &Rope<Real>::Gradient, true, false);
+      add("forward_viscoelastic", &Rope<Real>::Forward, true, true);
+      add("gradient_viscoelastic", &Rope<Real>::Gradient, true, true);
     }
   }
 }
