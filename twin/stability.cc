@@ -5,24 +5,64 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "twin/effects/effect_set.h"
 
 namespace physpring {
 namespace {
 
-// (L x)_i = sum over the springs at i of w (x_i - x_j); controllers stay at 0.
-Eigen::VectorXd ApplyLaplacian(const SpringMassSystem& system, const Eigen::VectorXd& weight,
-                               const Eigen::VectorXd& x) {
-  const int nodes = system.node_count();
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(nodes);
-  for (int e = 0; e < system.spring_count(); ++e) {
-    const auto [a, b] = system.springs[e];
-    const double tension = weight[e] * ((a < nodes ? x[a] : 0.0) - (b < nodes ? x[b] : 0.0));
-    if (a < nodes) result[a] += tension;
-    if (b < nodes) result[b] -= tension;
+// A = M^-1/2 L M^-1/2, where (L x)_i is the sum over the springs at i of w (x_i - x_j), and
+// controllers stay at 0.
+class ScaledLaplacian {
+ public:
+  ScaledLaplacian(const SpringMassSystem& system, const Eigen::VectorXd& weight)
+      : diagonal_(Eigen::VectorXd::Zero(system.node_count())) {
+    const int nodes = system.node_count();
+    for (int e = 0; e < system.spring_count(); ++e) {
+      const auto [a, b] = system.springs[e];
+      for (int end : {a, b}) {
+        if (end < nodes) diagonal_[end] += weight[e] / system.mass[end];
+      }
+      if (a >= nodes || b >= nodes) continue;
+      pairs_.push_back({a, b, weight[e] / std::sqrt(system.mass[a] * system.mass[b])});
+    }
   }
-  return result;
+
+  const Eigen::VectorXd& diagonal() const { return diagonal_; }
+
+  Eigen::VectorXd operator*(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd result = diagonal_.cwiseProduct(x);
+    for (const Pair& pair : pairs_) {
+      result.coeffRef(pair.a) -= pair.weight * x.coeff(pair.b);
+      result.coeffRef(pair.b) -= pair.weight * x.coeff(pair.a);
+    }
+    return result;
+  }
+
+ private:
+  struct Pair {
+    int a, b;
+    double weight;
+  };
+  Eigen::VectorXd diagonal_;
+  std::vector<Pair> pairs_;
+};
+
+// The last entry of the eigenvector of length 1 of a symmetric tridiagonal matrix, without its
+// sign: from that entry on upwards, where the entries of an outer eigenvalue grow.
+double LastEntry(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside,
+                 double eigenvalue) {
+  double entry = 1, below = 0, squared_norm = 1;
+  for (Eigen::Index i = diagonal.size() - 1; i > 0; --i) {
+    const double coupling = i < diagonal.size() - 1 ? beside[i] : 0;
+    const double above = ((eigenvalue - diagonal[i]) * entry - coupling * below) / beside[i - 1];
+    below = entry;
+    entry = above;
+    squared_norm += entry * entry;
+    if (squared_norm > 1e200) return 0;
+  }
+  return 1 / std::sqrt(squared_norm);
 }
 
 // The largest eigenvalue that was found, and a bound of its error.
@@ -30,19 +70,16 @@ struct Estimate {
   double eigenvalue, residual;
 };
 
-// Of M^-1/2 L M^-1/2, L the Laplacian with weights w of the springs, by Lanczos' method from the
-// vector q: the largest eigenvalue of the projection onto a Krylov space, and its residual.
-Estimate Lanczos(const SpringMassSystem& system, const Eigen::VectorXd& weight, Eigen::VectorXd q) {
-  const int nodes = system.node_count();
-  const int steps = std::min(nodes, 80);
-  const Eigen::VectorXd inverse_root = system.mass.cwiseSqrt().cwiseInverse();
-  Eigen::VectorXd previous = Eigen::VectorXd::Zero(nodes);
+// Lanczos' method from the vector q: the largest eigenvalue of the projection of A onto a Krylov
+// space, and its residual.
+Estimate Lanczos(const ScaledLaplacian& A, Eigen::VectorXd q) {
+  const Eigen::Index steps = std::min<Eigen::Index>(q.size(), 80);
+  Eigen::VectorXd previous = Eigen::VectorXd::Zero(q.size());
   q.normalize();
   Eigen::VectorXd diagonal(steps), beside(steps);  // of the projection
-  int size = 0;
+  Eigen::Index size = 0;
   for (;;) {
-    const Eigen::VectorXd x = inverse_root.cwiseProduct(q);
-    Eigen::VectorXd next = inverse_root.cwiseProduct(ApplyLaplacian(system, weight, x));
+    Eigen::VectorXd next = A * q;
     diagonal[size] = q.dot(next);
     next -= diagonal[size] * q;
     if (size > 0) next -= beside[size - 1] * previous;
@@ -54,27 +91,22 @@ Estimate Lanczos(const SpringMassSystem& system, const Eigen::VectorXd& weight, 
     q = next / beside[size - 1];
   }
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> projection;
-  projection.computeFromTridiagonal(diagonal.head(size), beside.head(size - 1));
-  const double residual =
-      beside[size - 1] * std::abs(projection.eigenvectors()(size - 1, size - 1));
-  return {projection.eigenvalues()[size - 1], residual};
+  projection.computeFromTridiagonal(diagonal.head(size), beside.head(size - 1),
+                                    Eigen::EigenvaluesOnly);
+  const double largest = projection.eigenvalues()[size - 1];
+  return {largest, beside[size - 1] * LastEntry(diagonal.head(size), beside, largest)};
 }
 
 // Upper estimate of the largest eigenvalue, from two start vectors, the same each time and without
 // symmetry: one spread evenly, and one where the diagonal is large, as the modes of a few nodes are
 // that uneven weights have at the top of the spectrum.
 double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& weight) {
-  const int nodes = system.node_count();
-  Eigen::VectorXd even(nodes), diagonal = Eigen::VectorXd::Zero(nodes);
-  for (int e = 0; e < system.spring_count(); ++e) {
-    for (int end : system.springs[e]) {
-      if (end < nodes) diagonal[end] += weight[e] / system.mass[end];
-    }
-  }
-  if (diagonal.isZero(0)) return 0;
-  for (int i = 0; i < nodes; ++i) even[i] = 1 + std::sin(12.9898 * (i + 1) * (i + 1));
-  const Estimate spread = Lanczos(system, weight, even);
-  const Estimate local = Lanczos(system, weight, even.cwiseProduct(diagonal.cwiseAbs2()));
+  const ScaledLaplacian A(system, weight);
+  if (A.diagonal().isZero(0)) return 0;
+  Eigen::VectorXd even(system.node_count());
+  for (int i = 0; i < even.size(); ++i) even[i] = 1 + std::sin(12.9898 * (i + 1) * (i + 1));
+  const Estimate spread = Lanczos(A, even);
+  const Estimate local = Lanczos(A, even.cwiseProduct(A.diagonal().cwiseAbs2()));
   const Estimate& larger = local.eigenvalue > spread.eigenvalue ? local : spread;
   return larger.eigenvalue + larger.residual;
 }
