@@ -2,6 +2,7 @@
 #include "rollout/painter.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rollout/mujoco_log.h"
 
@@ -16,6 +17,19 @@ void PreparePictures(PictureQuality quality, int width, int height, mjModel* mod
   model->vis.quality.numslices = 8;
   model->vis.quality.numstacks = 4;
   model->vis.quality.numquads = 1;
+}
+
+mjvCamera OverviewOf(const mjModel& model, const Eigen::Vector3d& low,
+                     const Eigen::Vector3d& high) {
+  mjvCamera view;
+  mjv_defaultCamera(&view);
+  const Eigen::Vector3d centre = (low + high) / 2;
+  mju_copy3(view.lookat, centre.data());
+  const double angle = static_cast<double>(model.vis.global.fovy) * EIGEN_PI / 180;
+  view.distance = 0.5 * (high - low).norm() / std::sin(angle / 2);
+  view.azimuth = 110;
+  view.elevation = -20;
+  return view;
 }
 
 Painter::Painter(const mjModel& model, PictureQuality quality, int width, int height)
@@ -46,12 +60,29 @@ Image Painter::Paint(mjData* data, int camera) {
   mjv_defaultCamera(&view);
   view.type = mjCAMERA_FIXED;
   view.fixedcamid = camera;
+  return Paint(data, view, Points(3, 0));
+}
+
+void Painter::Mark(const Points& marks) {
+  constexpr float kColour[4] = {1.0F, 0.35F, 0.1F, 1.0F};
+  constexpr double kSize = 0.003;  // of the model's extent
+  for (const auto& mark : marks.colwise()) {
+    if (std::isnan(mark[0]) || scene_.ngeom == scene_.maxgeom) continue;
+    const double radius[3] = {kSize * model_.stat.extent, 0, 0};
+    const double place[3] = {mark[0], mark[1], mark[2]};
+    mjv_initGeom(&scene_.geoms[scene_.ngeom++], mjGEOM_SPHERE, radius, place, nullptr, kColour);
+  }
+}
+
+Image Painter::Paint(mjData* data, const mjvCamera& camera, const Points& marks) {
+  mjvCamera view = camera;
   const mjrRect area{0, 0, width_, height_};
   Image image{width_, height_, {}};
   const std::size_t row = 3 * static_cast<std::size_t>(width_);
   std::vector<unsigned char> upwards(row * static_cast<std::size_t>(height_));
   CatchMujoco([&] {
     mjv_updateScene(&model_, data, &option_, nullptr, &view, mjCAT_ALL, &scene_);
+    Mark(marks);
     mjr_render(area, &scene_, &context_);
     mjr_readPixels(upwards.data(), nullptr, area, &context_);
   });

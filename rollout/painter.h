@@ -5,10 +5,12 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
 #include <string>
 
 #include "rollout/off_screen.h"
 #include "rollout/policy.h"
+#include "twin/points.h"
 
 namespace physpring {
 
@@ -20,6 +22,9 @@ enum class PictureQuality {
 // Sets what the model says about drawing, for pictures of this size. Before any Painter of it.
 void PreparePictures(PictureQuality quality, int width, int height, mjModel* model);
 
+// One that sees, obliquely from above, the box from one corner to the other.
+mjvCamera OverviewOf(const mjModel& model, const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+
 class Painter {
  public:
   // The model lives longer. Throws Error where OSMesa is missing.
@@ -30,8 +35,13 @@ class Painter {
 
   // The scene as `data` has it, seen by a camera of the model.
   Image Paint(mjData* data, int camera);
+  // The same, seen by any camera; with a small ball at each of `marks` (3 x points, m; a column of
+  // NaN has none).
+  Image Paint(mjData* data, const mjvCamera& camera, const Points& marks);
 
  private:
+  void Mark(const Points& marks);
+
   const mjModel& model_;
   int width_, height_;
   OffScreen off_screen_;

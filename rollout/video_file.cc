@@ -111,4 +111,16 @@ void VideoFile::Finish() {
   throw Error(path_ + ": ffmpeg could not write it");
 }
 
+Image SideBySide(const std::vector<Image>& images) {
+  Image wide{0, images[0].height, {}};
+  for (const Image& image : images) wide.width += image.width;
+  for (int y = 0; y < wide.height; ++y) {
+    for (const Image& image : images) {
+      const auto row = image.rgb.begin() + static_cast<std::ptrdiff_t>(3) * image.width * y;
+      wide.rgb.insert(wide.rgb.end(), row, row + static_cast<std::ptrdiff_t>(3) * image.width);
+    }
+  }
+  return wide;
+}
+
 }  // namespace physpring

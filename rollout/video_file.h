@@ -6,10 +6,14 @@
 #include <sys/types.h>
 
 #include <string>
+#include <vector>
 
 #include "rollout/policy.h"
 
 namespace physpring {
+
+// Images of one height as one. Not empty.
+Image SideBySide(const std::vector<Image>& images);
 
 class VideoFile {
  public:

@@ -14,6 +14,7 @@
 #include "tests/support/program.h"
 #include "tests/support/running_program.h"
 #include "tests/support/small_task.h"
+#include "tests/support/small_twin.h"
 #include "twin/atomic_file.h"
 
 namespace physpring {
@@ -135,6 +136,31 @@ TEST_F(RolloutTest, WritesAVideo) {
       File("film.mp4") + " >" + File("probe.txt");
   ASSERT_EQ(std::system(probe.c_str()), 0);
   EXPECT_EQ(ReadFile(File("probe.txt")), "128,48,20\n");
+}
+
+TEST_F(RolloutTest, MovesAnExportedTwinAsInARecording) {
+  const Twin twin = SmallTwin(2);
+  WriteTwin(twin, File("block.twin.npz"));
+  WriteRecording(RecordingOfMotion(twin, 8), File("block.npz"));
+  ASSERT_EQ(RunProgram({"export", File("block.twin.npz"), "-o", File("block"), "--contact", "none"})
+                .status,
+            0);
+  for (const int level : {0, 1}) {
+    const std::string scene = File(level == 0 ? "block/scene.xml" : "block/scene_level1.xml");
+    const ProgramResult result =
+        RunProgram({"rollout", scene, "--controllers", File("block.npz"), "--twin",
+                    File("block.twin.npz"), "--json", File("replay.json")});
+    ASSERT_EQ(result.status, 0) << result.errors;
+    const json report = json::parse(ReadFile(File("replay.json")));
+    EXPECT_EQ(report["level"], level);
+    EXPECT_EQ(report["frames"], 8);
+    const double motionless = report["motionless"]["track"];
+    EXPECT_GT(motionless, 5e-3);
+    EXPECT_LT(report["errors"]["track"], level == 0 ? 1e-6 : motionless);
+  }
+  EXPECT_TRUE(FailsWith(RunProgram({"rollout", File("block/scene.xml"), "--controllers", "no.npz"}),
+                        "no.npz: cannot be read"));
+  EXPECT_EQ(RunProgram({"rollout", "x.xml", "--controllers", "a.npz", "--level", "1"}).status, 2);
 }
 
 TEST_F(RolloutTest, SaysWhatIsWrong) {

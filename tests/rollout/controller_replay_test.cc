@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rollout/controller_replay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rollout/plugin_library.h"
+#include "tests/support/exported_folder.h"
+#include "tests/support/small_twin.h"
+#include "twin/error.h"
+#include "twin/lift.h"
+#include "twin/predict.h"
+
+namespace physpring {
+namespace {
+
+using testing::HasSubstr;
+
+// In the scene's time step, which is the trainer's sub-step, without contact.
+class ControllerReplayTest : public testing::TestWithParam<SpringKind> {
+ protected:
+  ControllerReplayTest() : folder_(twin_, Options()) { LoadPluginLibrary(PHYSPRING_PLUGIN); }
+
+  static ExportOptions Options() {
+    ExportOptions options;
+    options.springs = GetParam();
+    options.contact = ContactKind::kNone;
+    return options;
+  }
+
+  // The plugin takes a controller's velocity from where it was in the step before.
+  static double Tolerance() { return GetParam() == SpringKind::kTendon ? 1e-9 : 2e-5; }
+
+  const Twin twin_ = SmallTwin(2);
+  const Recording recording_ = RecordingOfMotion(twin_, 12);
+  const ExportedFolder folder_;
+};
+
+TEST_P(ControllerReplayTest, MovesAsTheTrainerPredicts) {
+  const ControllerReplay replay =
+      ReplayControllers(folder_.File("scene.xml"), recording_, nullptr, {});
+  EXPECT_EQ(replay.level, 0);
+  EXPECT_EQ(replay.warnings, std::vector<std::string>());
+  const std::vector<Points> predicted = Predict(twin_, 0, recording_, {});
+  ASSERT_EQ(replay.particles.size(), predicted.size());
+  EXPECT_GT((predicted.back() - predicted[0]).cwiseAbs().maxCoeff(), 1e-2);
+  for (std::size_t t = 0; t < predicted.size(); ++t) {
+    EXPECT_LT((replay.particles[t] - predicted[t]).cwiseAbs().maxCoeff(), Tolerance())
+        << "frame " << t;
+  }
+}
+
+TEST_P(ControllerReplayTest, LiftsALevelWithItsTwin) {
+  const std::string scene = folder_.File("scene_level1.xml");
+  const ControllerReplay replay = ReplayControllers(scene, recording_, &twin_, {});
+  EXPECT_EQ(replay.level, 1);
+  const std::vector<Points> predicted = Predict(twin_, 1, recording_, {});
+  const Lift lift(twin_, 1, recording_.start.leftCols(recording_.particle_count()));
+  for (std::size_t t = 0; t < predicted.size(); ++t) {
+    EXPECT_LT((replay.particles[t] - lift.Apply(predicted[t])).cwiseAbs().maxCoeff(), Tolerance());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Springs, ControllerReplayTest,
+                         testing::Values(SpringKind::kTendon, SpringKind::kPlugin),
+                         [](const auto& kind) {
+                           return kind.param == SpringKind::kTendon ? "Tendons" : "Plugin";
+                         });
+
+std::string Message(const std::string& scene, const Recording& recording, const Twin* twin) {
+  try {
+    ReplayControllers(scene, recording, twin, {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ControllerReplayErrors, SayWhatDoesNotFit) {
+  const Twin twin = SmallTwin(2);
+  const ExportedFolder folder(twin, {});
+  Recording recording = RecordingOfMotion(twin, 3);
+  EXPECT_THAT(Message(folder.File("scene_level1.xml"), recording, nullptr),
+              HasSubstr("a level above 0 needs its twin"));
+  const Twin other = SmallTwin(1);
+  EXPECT_THAT(Message(folder.File("scene_level1.xml"), recording, &other),
+              HasSubstr("as no level of twin"));
+  for (Points& frame : recording.controllers) frame = Points(frame.leftCols(1));
+  EXPECT_THAT(Message(folder.File("scene.xml"), recording, nullptr),
+              HasSubstr("has 2 controllers, but recording"));
+  EXPECT_THAT(
+      Message(std::string(PHYSPRING_SOURCE_DIR) + "/models/demo/rope.xml", recording, nullptr),
+      HasSubstr("holds 0 objects written by physpring export, expected 1"));
+}
+
+}  // namespace
+}  // namespace physpring
