@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <regex>
 #include <system_error>
 #include <vector>
 
@@ -43,13 +42,22 @@ class DraftFolder {
   std::string path_;
 };
 
+// level0.xml, scene_level12.xml ...
+bool IsLevelFile(std::string_view name) {
+  constexpr std::string_view kScene = "scene_", kLevel = "level", kEnding = ".xml";
+  if (name.starts_with(kScene)) name.remove_prefix(kScene.size());
+  if (!name.starts_with(kLevel) || !name.ends_with(kEnding)) return false;
+  if (name.size() <= kLevel.size() + kEnding.size()) return false;
+  name = name.substr(kLevel.size(), name.size() - kLevel.size() - kEnding.size());
+  return name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 // Levels of an earlier export that `files` does not bring again.
 void RemoveOtherLevels(const fs::path& folder, const std::map<std::string, std::string>& files) {
-  static const std::regex kLevel(R"((scene_)?level\d+\.xml)");
   std::vector<fs::path> others;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (std::regex_match(name, kLevel) && !files.contains(name)) others.push_back(entry.path());
+    if (IsLevelFile(name) && !files.contains(name)) others.push_back(entry.path());
   }
   std::error_code ignored;
   for (const fs::path& other : others) fs::remove(other, ignored);

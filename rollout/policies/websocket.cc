@@ -7,7 +7,6 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
-#include <regex>
 
 #include "rollout/policies/openpi_messages.h"
 #include "twin/error.h"
@@ -24,15 +23,26 @@ struct Address {
   std::string host, port, path;
 };
 
+// ws://HOST:PORT or ws://[HOST]:PORT, and /PATH behind it.
 Address ParseAddress(const std::string& text) {
-  static const std::regex form(R"(ws://([^/:]+|\[[0-9a-fA-F:.]+\]):([0-9]{1,5})(/.*)?)");
-  std::smatch parts;
-  if (!std::regex_match(text, parts, form)) {
-    throw Error(fmt::format("policy {}: expected ws://HOST:PORT", Quote(text)));
+  constexpr std::string_view kScheme = "ws://", kDigits = "0123456789";
+  constexpr std::size_t kNowhere = std::string::npos;
+  const std::size_t path = text.find('/', kScheme.size());
+  const std::string place = text.substr(0, path);
+  const std::size_t colon = place.rfind(':');
+  Address address{"", "", path == kNowhere ? "/" : text.substr(path)};
+  if (text.starts_with(kScheme) && colon != kNowhere && colon > kScheme.size()) {
+    address.host = place.substr(kScheme.size(), colon - kScheme.size());
+    address.port = place.substr(colon + 1);
   }
-  std::string host = parts[1];
-  if (host.starts_with('[')) host = host.substr(1, host.size() - 2);
-  return {host, parts[2], parts[3].matched ? parts[3].str() : "/"};
+  const bool bracketed = address.host.starts_with('[') && address.host.ends_with(']');
+  if (bracketed) address.host = address.host.substr(1, address.host.size() - 2);
+  const bool is_host =
+      !address.host.empty() && (bracketed || address.host.find_first_of(":[]") == kNowhere);
+  const bool is_port = !address.port.empty() && address.port.size() <= 5 &&
+                       address.port.find_first_not_of(kDigits) == kNowhere;
+  if (is_host && is_port) return address;
+  throw Error(fmt::format("policy {}: expected ws://HOST:PORT", Quote(text)));
 }
 
 // A connection whose every operation ends within `patience` seconds, or throws PolicyError.
