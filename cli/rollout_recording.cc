@@ -19,6 +19,16 @@
 namespace physpring {
 namespace {
 
+// Loads the plugin, which a scene of tendons does not need. Empty, or why it could not be.
+std::string WhyNoPlugin() {
+  try {
+    LoadPluginLibrary();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 // Over all frames after the first one.
 ErrorMeans Compare(const Recording& recording, const std::vector<Points>& particles) {
   std::vector<int> surface(recording.point_count());
@@ -47,10 +57,7 @@ nlohmann::ordered_json ErrorsAsJson(const ErrorMeans& errors) {
 }  // namespace
 
 void RolloutRecording(const RecordingRollout& rollout) {
-  try {
-    LoadPluginLibrary();
-  } catch (const Error&) {  // tendons need none; MuJoCo says so where a scene does
-  }
+  const std::string missing = WhyNoPlugin();
   ExpectOutputs({rollout.video, rollout.json}, {rollout.scene, rollout.recording, rollout.twin});
   const Recording recording = ReadRecording(rollout.recording);
   for (const std::string& warning : recording.warnings) {
@@ -70,8 +77,13 @@ void RolloutRecording(const RecordingRollout& rollout) {
     progress.Show(static_cast<double>(frame) / recording.frame_count(),
                   fmt::format("frame {} of {}", frame, recording.frame_count()));
   };
-  const ControllerReplay replay =
-      ReplayControllers(rollout.scene, recording, twin ? &*twin : nullptr, options);
+  ControllerReplay replay;
+  try {
+    replay = ReplayControllers(rollout.scene, recording, twin ? &*twin : nullptr, options);
+  } catch (const Error& error) {
+    if (missing.empty()) throw;
+    throw Error(fmt::format("{}; {}", error.what(), missing));
+  }
   for (const std::string& warning : replay.warnings) fmt::print(stderr, "warning: {}\n", warning);
 
   const ErrorMeans errors = Compare(recording, replay.particles);
