@@ -38,7 +38,7 @@ ErrorMeans Compare(const Recording& recording, const std::vector<Points>& partic
       recording.frame_count());
 }
 
-std::string Row(const std::string& name, const std::string& model, const ErrorMeans& errors) {
+std::string ReplayRow(const std::string& name, const std::string& model, const ErrorMeans& errors) {
   const auto millimetres = [](const MeanError& error) {
     return error.value ? fmt::format("{:.2f}", 1e3 * *error.value) : "-";
   };
@@ -94,11 +94,11 @@ void RolloutRecording(const RecordingRollout& rollout) {
              recording.frame_count(), recording.fps);
   fmt::print("{:<10} {:>6} {:>8} {:>13} {:>11} | {:>8} {:>8}\n", "in mm", "nodes", "steps",
              "time step ms", "FPS", "CD", "track");
-  fmt::print("{}", Row(fmt::format("level {}", replay.level),
-                       fmt::format("{:>6} {:>8} {:>13.4g} {:>11.0f}", replay.nodes, replay.steps,
-                                   1e3 * replay.timestep, fps),
-                       errors));
-  fmt::print("{}", Row("motionless", "", motionless));
+  fmt::print("{}", ReplayRow(fmt::format("level {}", replay.level),
+                             fmt::format("{:>6} {:>8} {:>13.4g} {:>11.0f}", replay.nodes,
+                                         replay.steps, 1e3 * replay.timestep, fps),
+                             errors));
+  fmt::print("{}", ReplayRow("motionless", "", motionless));
   if (!rollout.video.empty()) {
     fmt::print("\nvideo: {}, drawn in {:.2g} s\n", rollout.video, replay.rendering);
   }
