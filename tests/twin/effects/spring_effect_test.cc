@@ -17,13 +17,13 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-struct Effect {
+struct KnownEffect {
   EffectValues values;
   // Extra tension at time t, in a sub-step of h; z: internal variable.
   std::function<double(const SpringMoment<double>& s, double t, double h, double* z)> tension;
 };
 
-std::vector<Effect> Effects() {
+std::vector<KnownEffect> KnownEffects() {
   using Moment = SpringMoment<double>;
   const auto stretch = [](const Moment& s) { return s.length - s.rest_length; };
   return {
@@ -59,18 +59,18 @@ std::vector<Effect> Effects() {
   };
 }
 
-TargetedRollout RolloutWith(const std::vector<Effect>& effects) {
+TargetedRollout RolloutWith(const std::vector<KnownEffect>& effects) {
   TargetedRollout rollout = RandomRollout(4, 1);
   for (std::size_t i = 0; i < rollout.frames.size(); ++i) {
     rollout.frames[i].time = static_cast<double>(i) * rollout.options.frame_time;
   }
-  for (const Effect& effect : effects) rollout.system.effects.push_back(effect.values);
+  for (const KnownEffect& effect : effects) rollout.system.effects.push_back(effect.values);
   return rollout;
 }
 
 class PlainSimulation {
  public:
-  PlainSimulation(const TargetedRollout& rollout, std::vector<Effect> effects)
+  PlainSimulation(const TargetedRollout& rollout, std::vector<KnownEffect> effects)
       : system_(rollout.system),
         effects_(std::move(effects)),
         h_(rollout.options.frame_time / rollout.options.substeps),
@@ -119,7 +119,7 @@ class PlainSimulation {
   }
 
   const SpringMassSystem system_;
-  const std::vector<Effect> effects_;
+  const std::vector<KnownEffect> effects_;
   const double h_;
   const Vector gravity_;
   Points x_, v_;
@@ -128,14 +128,14 @@ class PlainSimulation {
 
 // Largest difference of a coordinate, m, of about 0.2 m.
 template <class Real>
-double Difference(const std::vector<Effect>& effects) {
+double Difference(const std::vector<KnownEffect>& effects) {
   const TargetedRollout rollout = RolloutWith(effects);
   const Points plain = PlainSimulation(rollout, effects).Positions();
   return (Simulate<Real>(rollout).back() - plain).cwiseAbs().maxCoeff();
 }
 
 TEST(SpringEffect, FollowsItsFormula) {
-  for (const Effect& effect : Effects()) {
+  for (const KnownEffect& effect : KnownEffects()) {
     SCOPED_TRACE(effect.values.name);
     EXPECT_LT(Difference<double>({effect}), 1e-14);  // of 40 sub-steps, each rounded at 1e-17
     EXPECT_LT(Difference<float>({effect}), 1e-6);    // 1e-8
@@ -143,15 +143,15 @@ TEST(SpringEffect, FollowsItsFormula) {
 }
 
 TEST(SpringEffect, ActsTogetherWithOthers) {
-  EXPECT_LT(Difference<double>(Effects()), 1e-14);
-  EXPECT_LT(Difference<float>(Effects()), 1e-6);
+  EXPECT_LT(Difference<double>(KnownEffects()), 1e-14);
+  EXPECT_LT(Difference<float>(KnownEffects()), 1e-6);
 }
 
 // Kernels differ in how they measure springs; the laws are the same.
 TEST(SpringEffect, GivesTheSameBitsWithAnyKernel) {
   const Kernel<float>* avx2 = FindKernel<float>("avx2");
   if (avx2 == nullptr) GTEST_SKIP() << "this processor has no AVX2";
-  const TargetedRollout rollout = RolloutWith(Effects());
+  const TargetedRollout rollout = RolloutWith(KnownEffects());
   const auto simulate = [&](const Kernel<float>& kernel) {
     const Simulator<float> simulator(rollout.system, {}, rollout.options, kernel);
     Simulator<float>::Workspace workspace(simulator);
