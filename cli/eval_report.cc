@@ -17,10 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string Millimetres(const std::optional<double>& metres) {
-  return metres ? fmt::format("{:.2f}", 1e3 * *metres) : "-";
-}
-
 // Which columns a table has beside the prediction's.
 struct Columns {
   bool fit, lifted, published;
@@ -164,6 +160,10 @@ Npz TrajectoryOf(const EvaluatedRecording& evaluated) {
 }
 
 }  // namespace
+
+std::string Millimetres(const std::optional<double>& metres) {
+  return metres ? fmt::format("{:.2f}", 1e3 * *metres) : "-";
+}
 
 std::string FormatTables(const Evaluation& evaluation) {
   const std::vector<Row> means = MeanRows(evaluation);

@@ -4,11 +4,15 @@
 #ifndef PHYSPRING_CLI_EVAL_REPORT_H_
 #define PHYSPRING_CLI_EVAL_REPORT_H_
 
+#include <optional>
 #include <string>
 
 #include "cli/evaluation.h"
 
 namespace physpring {
+
+// A length in metres as tables have it: millimetres with two digits, "-" where there is none.
+std::string Millimetres(const std::optional<double>& metres);
 
 // A table for each recording and, of several, one of their means. Ends with a newline.
 std::string FormatTables(const Evaluation& evaluation);

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 
+#include "cli/eval_report.h"
 #include "cli/interrupt.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
@@ -31,19 +31,12 @@ std::string WhyNoPlugin() {
 
 // Over all frames after the first one.
 ErrorMeans Compare(const Recording& recording, const std::vector<Points>& particles) {
-  std::vector<int> surface(recording.point_count());
-  std::iota(surface.begin(), surface.end(), 0);
-  return MeansOverFrames(
-      ComputeFrameErrors(recording, particles, surface, ParticlesOfTrack(recording)), 1,
-      recording.frame_count());
+  return MeansOverFrames(ComputeParticleErrors(recording, particles), 1, recording.frame_count());
 }
 
 std::string ReplayRow(const std::string& name, const std::string& model, const ErrorMeans& errors) {
-  const auto millimetres = [](const MeanError& error) {
-    return error.value ? fmt::format("{:.2f}", 1e3 * *error.value) : "-";
-  };
-  return fmt::format("{:<10} {:>41} | {:>8} {:>8}\n", name, model, millimetres(errors.cd),
-                     millimetres(errors.track));
+  return fmt::format("{:<10} {:>41} | {:>8} {:>8}\n", name, model, Millimetres(errors.cd.value),
+                     Millimetres(errors.track.value));
 }
 
 nlohmann::ordered_json ErrorsAsJson(const ErrorMeans& errors) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/camera_thread.h"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -13,7 +11,6 @@
 
 #include "rollout/video_file.h"
 #include "twin/error.h"
-#include "twin/quote.h"
 
 namespace physpring {
 namespace {
@@ -37,21 +34,17 @@ void Put(const Snapshot& snapshot, const mjModel& model, mjData* data) {
   std::copy(snapshot.qpos.begin(), snapshot.qpos.end(), data->qpos);
   std::copy(snapshot.mocap_pos.begin(), snapshot.mocap_pos.end(), data->mocap_pos);
   std::copy(snapshot.mocap_quat.begin(), snapshot.mocap_quat.end(), data->mocap_quat);
-  mj_kinematics(&model, data);
-  mj_comPos(&model, data);
-  mj_camlight(&model, data);
-  mj_flex(&model, data);
-  mj_tendon(&model, data);
+  PlaceForDrawing(model, data);
 }
 
 class CameraThread : public Viewer {
  public:
   CameraThread(const TaskModel& model, const CameraOptions& options)
       : task_(*model.task), model_(*model.model), options_(options) {
-    for (const std::string& name : task_.cameras) cameras_.push_back(Camera(name));
+    for (const std::string& name : task_.cameras) cameras_.push_back(Find(name));
     std::vector<std::string> shown = options_.video_shows;
     if (shown.empty() && !task_.cameras.empty()) shown.push_back(task_.cameras.front());
-    for (const std::string& name : shown) shown_.push_back(Camera(name));
+    for (const std::string& name : shown) shown_.push_back(Find(name));
     if (!options_.video.empty()) {
       if (shown_.empty()) throw Error(task_.folder + "/task.json: names no cameras for a video");
       video_.emplace(options_.video, task_.width * static_cast<int>(shown_.size()), task_.height,
@@ -110,11 +103,7 @@ class CameraThread : public Viewer {
     std::promise<Images>* seen;  // null: a picture of the video
   };
 
-  int Camera(const std::string& name) const {
-    const int camera = mj_name2id(&model_, mjOBJ_CAMERA, name.c_str());
-    if (camera < 0) throw Error(fmt::format("{}: has no camera {}", task_.scene, Quote(name)));
-    return camera;
-  }
+  mjvCamera Find(const std::string& name) const { return FindCamera(model_, name, task_.scene); }
 
   void ThrowFailure() const {
     if (failure_) std::rethrow_exception(failure_);
@@ -173,7 +162,7 @@ class CameraThread : public Viewer {
     Put(job.snapshot, model_, data);
     if (!job.seen) {
       std::vector<Image> images;
-      for (const int camera : shown_) images.push_back(painter->Paint(data, camera));
+      for (const mjvCamera& view : shown_) images.push_back(painter->Paint(data, view));
       video_->Add(SideBySide(images));
       return;
     }
@@ -191,7 +180,7 @@ class CameraThread : public Viewer {
   const Task& task_;
   const mjModel& model_;
   const CameraOptions options_;
-  std::vector<int> cameras_, shown_;
+  std::vector<mjvCamera> cameras_, shown_;
   std::optional<VideoFile> video_;  // the thread's until it has ended
   mutable std::mutex mutex_;        // of what follows
   std::condition_variable changed_;

@@ -14,7 +14,6 @@
 #include "twin/hierarchy.h"
 #include "twin/lift.h"
 #include "twin/predict.h"
-#include "twin/quote.h"
 
 namespace physpring {
 namespace {
@@ -76,14 +75,7 @@ class Film {
         video_(options.video, options.width * std::max(1, static_cast<int>(options.cameras.size())),
                options.height, recording.fps) {
     for (const std::string& name : options.cameras) {
-      mjvCamera view;
-      mjv_defaultCamera(&view);
-      view.type = mjCAMERA_FIXED;
-      view.fixedcamid = mj_name2id(&model, mjOBJ_CAMERA, name.c_str());
-      if (view.fixedcamid < 0) {
-        throw Error(fmt::format("{}: has no camera {}", scene, Quote(name)));
-      }
-      views_.push_back(view);
+      views_.push_back(FindCamera(model, name, scene));
     }
     if (!views_.empty()) return;
     const auto [low, high] = BoxOf(recording);
@@ -91,10 +83,7 @@ class Film {
   }
 
   void Add(int frame, mjData* data) {
-    mj_comPos(&model_, data);
-    mj_camlight(&model_, data);
-    mj_flex(&model_, data);
-    mj_tendon(&model_, data);
+    PlaceForDrawing(model_, data);
     std::vector<Image> images;
     for (const mjvCamera& view : views_) {
       images.push_back(painter_.Paint(data, view, recording_.points[frame]));
@@ -135,8 +124,8 @@ ControllerReplay ReplayControllers(const std::string& scene, const Recording& re
   if (!options.video.empty()) {
     PreparePictures(options.quality, options.width, options.height, model.get());
   }
-  replay.steps = static_cast<int>(std::ceil(1 / (recording.fps * model->opt.timestep) - 1e-6));
-  replay.timestep = model->opt.timestep = 1 / (recording.fps * replay.steps);
+  replay.steps = FitTimestep(recording.fps, model.get());
+  replay.timestep = model->opt.timestep;
   const ExportedObject object(*model, scene);
   replay.nodes = object.node_count();
   replay.level = FindLevel(object, recording, twin, scene);

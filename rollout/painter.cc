@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/painter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "rollout/mujoco_log.h"
+#include "twin/error.h"
+#include "twin/quote.h"
 
 namespace physpring {
 
@@ -19,6 +23,15 @@ void PreparePictures(PictureQuality quality, int width, int height, mjModel* mod
   model->vis.quality.numquads = 1;
 }
 
+mjvCamera FindCamera(const mjModel& model, const std::string& name, const std::string& scene) {
+  mjvCamera view;
+  mjv_defaultCamera(&view);
+  view.type = mjCAMERA_FIXED;
+  view.fixedcamid = mj_name2id(&model, mjOBJ_CAMERA, name.c_str());
+  if (view.fixedcamid < 0) throw Error(fmt::format("{}: has no camera {}", scene, Quote(name)));
+  return view;
+}
+
 mjvCamera OverviewOf(const mjModel& model, const Eigen::Vector3d& low,
                      const Eigen::Vector3d& high) {
   mjvCamera view;
@@ -30,6 +43,14 @@ mjvCamera OverviewOf(const mjModel& model, const Eigen::Vector3d& low,
   view.azimuth = 110;
   view.elevation = -20;
   return view;
+}
+
+void PlaceForDrawing(const mjModel& model, mjData* data) {
+  mj_kinematics(&model, data);
+  mj_comPos(&model, data);
+  mj_camlight(&model, data);
+  mj_flex(&model, data);
+  mj_tendon(&model, data);
 }
 
 Painter::Painter(const mjModel& model, PictureQuality quality, int width, int height)
@@ -53,14 +74,6 @@ Painter::Painter(const mjModel& model, PictureQuality quality, int width, int he
 Painter::~Painter() {
   mjr_freeContext(&context_);
   mjv_freeScene(&scene_);
-}
-
-Image Painter::Paint(mjData* data, int camera) {
-  mjvCamera view;
-  mjv_defaultCamera(&view);
-  view.type = mjCAMERA_FIXED;
-  view.fixedcamid = camera;
-  return Paint(data, view, Points(3, 0));
 }
 
 void Painter::Mark(const Points& marks) {

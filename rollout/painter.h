@@ -22,8 +22,14 @@ enum class PictureQuality {
 // Sets what the model says about drawing, for pictures of this size. Before any Painter of it.
 void PreparePictures(PictureQuality quality, int width, int height, mjModel* model);
 
-// One that sees, obliquely from above, the box from one corner to the other.
+// The model's camera of this name. Throws Error, which begins with `scene`, when it has none.
+mjvCamera FindCamera(const mjModel& model, const std::string& name, const std::string& scene);
+
+// A camera that sees, obliquely from above, the box from one corner to the other.
 mjvCamera OverviewOf(const mjModel& model, const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+
+// Puts everything that is drawn where qpos and the mocap bodies have it.
+void PlaceForDrawing(const mjModel& model, mjData* data);
 
 class Painter {
  public:
@@ -33,11 +39,9 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  // The scene as `data` has it, seen by a camera of the model.
-  Image Paint(mjData* data, int camera);
-  // The same, seen by any camera; with a small ball at each of `marks` (3 x points, m; a column of
+  // The scene as `data` has it, with a small ball at each of `marks` (3 x points, m; a column of
   // NaN has none).
-  Image Paint(mjData* data, const mjvCamera& camera, const Points& marks);
+  Image Paint(mjData* data, const mjvCamera& camera, const Points& marks = Points(3, 0));
 
  private:
   void Mark(const Points& marks);

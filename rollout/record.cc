@@ -189,9 +189,7 @@ Recording RecordScene(const std::string& scene_path, const RecordOptions& option
   if (declared->opt.disableflags & mjDSBL_GRAVITY) recording.gravity.setZero();
   recording.train_frames = static_cast<int>(std::lround(0.7 * frames));
 
-  // the longest step, not above the scene's, that divides the frame
-  model->opt.timestep =
-      1 / (options.fps * std::ceil(1 / (options.fps * model->opt.timestep) - 1e-6));
+  FitTimestep(options.fps, model.get());
   const DataPtr data = MakeData(*model);
   Run run{model.get(), path, soft, effects, data.get()};
   run.lag = std::lround(effects.latency() / model->opt.timestep);

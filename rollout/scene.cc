@@ -2,6 +2,7 @@
 #include "rollout/scene.h"
 
 #include <array>
+#include <cmath>
 
 #include "rollout/mujoco_log.h"
 #include "rollout/scene_spec.h"
@@ -44,6 +45,12 @@ ModelPtr CompileScene(const std::string& mjcf, const std::string& where, const S
   ModelPtr model = Compile(spec.get(), where, &warnings);
   if (!warnings.empty()) throw Error(warnings.front());
   return model;
+}
+
+int FitTimestep(double fps, mjModel* model) {
+  const double steps = std::ceil(1 / (fps * model->opt.timestep) - 1e-6);
+  model->opt.timestep = 1 / (fps * steps);
+  return static_cast<int>(steps);
 }
 
 DataPtr MakeData(const mjModel& model) {

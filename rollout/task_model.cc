@@ -137,9 +137,7 @@ TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* w
   made.task = &task;
   made.level = level;
   made.model = Compile(task.scene, scene.get(), warnings);
-  const double frame = 1 / task.rate;
-  made.steps = static_cast<int>(std::ceil(frame / made.model->opt.timestep - 1e-6));
-  made.model->opt.timestep = frame / made.steps;
+  made.steps = FitTimestep(task.rate, made.model.get());
   FindNodes(body, file, &made);
   const std::string where = task.folder + "/task.json";
   FindRobot(where, &made);

@@ -3,20 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 
 #include "twin/hierarchy.h"
 #include "twin/lift.h"
 
 namespace physpring {
 namespace {
-
-// Errors of level-0 particles: T frames of 3 x (points + interior).
-FrameErrors CompareParticles(const Recording& recording, const std::vector<Points>& particles) {
-  std::vector<int> surface(recording.point_count());
-  std::iota(surface.begin(), surface.end(), 0);
-  return ComputeFrameErrors(recording, particles, surface, ParticlesOfTrack(recording));
-}
 
 LevelResult EvaluateLevel(const Twin& twin, int level, const Recording& recording,
                           const PredictOptions& options) {
@@ -38,7 +30,7 @@ LevelResult EvaluateLevel(const Twin& twin, int level, const Recording& recordin
   for (const Points& frame : particles) {
     result.points.emplace_back(frame.leftCols(recording.point_count()));
   }
-  result.lifted = CompareParticles(recording, particles);
+  result.lifted = ComputeParticleErrors(recording, particles);
   result.direct = level == 0
                       ? result.lifted
                       : ComputeFrameErrors(recording, result.positions, SurfaceNodes(twin, level),
@@ -64,7 +56,7 @@ RecordingResult Evaluate(const Twin& twin, const Recording& recording,
   const Points start = recording.start.leftCols(recording.particle_count());
   std::vector<Points> still;
   for (int t = 0; t < recording.frame_count(); ++t) still.push_back(start);
-  result.motionless = CompareParticles(recording, still);
+  result.motionless = ComputeParticleErrors(recording, still);
   result.motionless_published_l1 = PublishedL1(recording, still);
   return result;
 }

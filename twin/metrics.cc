@@ -100,6 +100,13 @@ FrameErrors ComputeFrameErrors(const Recording& recording, const std::vector<Poi
   return errors;
 }
 
+FrameErrors ComputeParticleErrors(const Recording& recording,
+                                  const std::vector<Points>& particles) {
+  std::vector<int> surface(recording.point_count());
+  std::iota(surface.begin(), surface.end(), 0);
+  return ComputeFrameErrors(recording, particles, surface, ParticlesOfTrack(recording));
+}
+
 MeanError MeanOverFrames(const std::vector<double>& errors, int first, int last) {
   MeanError mean;
   double sum = 0;

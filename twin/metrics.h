@@ -45,6 +45,9 @@ struct FrameErrors {
 FrameErrors ComputeFrameErrors(const Recording& recording, const std::vector<Points>& predicted,
                                const std::vector<int>& surface, const std::vector<int>& track);
 
+// The same of the particles of level 0: T frames of 3 x (points + interior).
+FrameErrors ComputeParticleErrors(const Recording& recording, const std::vector<Points>& particles);
+
 struct MeanError {
   std::optional<double> value;  // m; none if no frame has data
   int frames = 0;               // that have data

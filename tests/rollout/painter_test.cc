@@ -46,7 +46,7 @@ class PainterTest : public testing::Test {
     const DataPtr data = MakeData(*model);
     mj_forward(model.get(), data.get());
     Painter painter(*model, quality, kWidth, kHeight);
-    return painter.Paint(data.get(), 0);
+    return painter.Paint(data.get(), FindCamera(*model, "side", "scene.xml"));
   }
 
   TemporaryFolder folder_;
