@@ -67,7 +67,7 @@ Json UnexplainedJson(const Diagnosis& diagnosis) {
           {"direction", Direction(left.direction)}};
 }
 
-std::string Millimetres(double metres) {
+std::string InMillimetres(double metres) {
   return std::isfinite(metres) ? fmt::format("{:.2f} mm", 1e3 * metres) : "no data";
 }
 
@@ -144,7 +144,7 @@ std::string Verdict(const Diagnosis& diagnosis) {
   return fmt::format(
       "{}{} above the noise are unexplained, most of it at point {}, {:.2f} to {:.2f} s, towards "
       "({:.2f}, {:.2f}, {:.2f})",
-      verdict.empty() ? "" : verdict + "; ", Millimetres(left.track), left.point, left.first_time,
+      verdict.empty() ? "" : verdict + "; ", InMillimetres(left.track), left.point, left.first_time,
       left.last_time, left.direction[0], left.direction[1], left.direction[2]);
 }
 
@@ -172,7 +172,7 @@ std::string Plot(const Diagnosis& diagnosis) {
       "stroke='#888' stroke-dasharray='4'/>{1}{2}</svg><p>Track error of held-out frames, one "
       "after the other; the top is {3}. Red: before, blue: after, dashed: noise floor.</p>",
       floor, Curve(diagnosis.before_track, top, "#c33"), Curve(diagnosis.after_track, top, "#25c"),
-      Millimetres(top));
+      InMillimetres(top));
 }
 
 }  // namespace
@@ -199,13 +199,13 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
 }
 
 std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
-  std::string text = fmt::format("noise floor: {}\n", Millimetres(diagnosis.noise_floor));
-  text += fmt::format("before: fit {}, held out {}\n", Millimetres(diagnosis.before.fit),
-                      Millimetres(diagnosis.before.held));
+  std::string text = fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
+  text += fmt::format("before: fit {}, held out {}\n", InMillimetres(diagnosis.before.fit),
+                      InMillimetres(diagnosis.before.held));
   for (const EffectCandidate& candidate : diagnosis.candidates) {
     if (!candidate.refit) continue;
     text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
-                        candidate.name, 100 * candidate.score, Millimetres(candidate.refit->held),
+                        candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
                         Interval(candidate.gain), candidate.gain.p);
   }
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
@@ -214,8 +214,8 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   }
   const std::string confounded = DescribeConfounded(diagnosis);
   if (!confounded.empty()) text += confounded + "\n";
-  text += fmt::format("after: fit {}, held out {}\n", Millimetres(diagnosis.after.fit),
-                      Millimetres(diagnosis.after.held));
+  text += fmt::format("after: fit {}, held out {}\n", InMillimetres(diagnosis.after.fit),
+                      InMillimetres(diagnosis.after.held));
   return text + Verdict(diagnosis) + "\n";
 }
 
@@ -229,9 +229,9 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& t
       "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
       "<tr><td>before</td><td>{}</td><td>{}</td></tr><tr><td>after</td><td>{}</td><td>{}</td></tr>"
       "<tr><td>noise floor</td><td colspan='2'>{}</td></tr></table><p>{}.</p>",
-      Millimetres(diagnosis.before.fit), Millimetres(diagnosis.before.held),
-      Millimetres(diagnosis.after.fit), Millimetres(diagnosis.after.held),
-      Millimetres(diagnosis.noise_floor), Interval(diagnosis.gain));
+      InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held),
+      InMillimetres(diagnosis.after.fit), InMillimetres(diagnosis.after.held),
+      InMillimetres(diagnosis.noise_floor), Interval(diagnosis.gain));
   page += Plot(diagnosis);
   page += "<h2>Effects added</h2><ul>";
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
@@ -251,7 +251,7 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& t
   for (const EffectCandidate& candidate : diagnosis.candidates) {
     page += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>{}</td><td>{}</td></tr>",
                         candidate.name, 100 * candidate.score,
-                        candidate.refit ? Millimetres(candidate.refit->held) : "",
+                        candidate.refit ? InMillimetres(candidate.refit->held) : "",
                         candidate.refit ? Interval(candidate.gain) : "");
   }
   return page + "</table></html>\n";

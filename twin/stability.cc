@@ -123,6 +123,15 @@ StabilityBound ComputeStabilityBound(const SpringMassSystem& system) {
           root > 0 ? 4 / root : std::numeric_limits<double>::infinity()};
 }
 
+bool LimitDashpots(double timestep, SpringMassSystem* system) {
+  const StabilityBound bound = ComputeStabilityBound(*system);
+  if (timestep <= bound.timestep) return true;
+  const double root = timestep * bound.omega_max;
+  if (root >= 2 || bound.gamma_max == 0) return false;
+  system->dashpot *= (4 - root * root) / (2 * timestep) / bound.gamma_max;
+  return timestep <= ComputeStabilityBound(*system).timestep * (1 + 1e-6);
+}
+
 int StableSubsteps(const StabilityBound& bound, double frame_time, double safety) {
   const double substeps = std::ceil(frame_time / (safety * bound.timestep) - 1e-9);
   return static_cast<int>(std::clamp(substeps, 1.0, 1e6));

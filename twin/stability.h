@@ -22,6 +22,10 @@ struct StabilityBound {
 // By Lanczos' method; springs of stiffness and dashpot 0 bound nothing (timestep is then infinite).
 StabilityBound ComputeStabilityBound(const SpringMassSystem& system);
 
+// Lowers all dashpots by one factor, as far as it takes to make `timestep` stable. Returns whether
+// it then is.
+bool LimitDashpots(double timestep, SpringMassSystem* system);
+
 // Share of the bound's time step that automatic sub-steps stay below.
 constexpr double kStepSafety = 0.7;
 

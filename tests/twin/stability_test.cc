@@ -119,6 +119,36 @@ TEST(Stability, SpringsOfStiffnessZeroBoundNothing) {
   EXPECT_EQ(StableSubsteps(ComputeStabilityBound(Row(5, 0, 0)), 0.1, 0.5), 1);
 }
 
+TEST(LimitDashpots, LowersThemToWhatTheStepAllows) {
+  SpringMassSystem system = RandomSystem(40, 0, 2);
+  const SpringMassSystem before = system;
+  const double without = [&] {
+    SpringMassSystem undamped = before;
+    undamped.dashpot.setZero();
+    return ComputeStabilityBound(undamped).timestep;
+  }();
+  const double step = 0.9 * without;
+  ASSERT_GT(step, ComputeStabilityBound(before).timestep);
+  EXPECT_TRUE(LimitDashpots(step, &system));
+  EXPECT_NEAR(ComputeStabilityBound(system).timestep, step, 1e-5 * step);
+  EXPECT_EQ(system.stiffness, before.stiffness);
+  const double factor = system.dashpot[0] / before.dashpot[0];
+  EXPECT_LT((system.dashpot - factor * before.dashpot).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(LimitDashpots, LeavesWhatIsStable) {
+  SpringMassSystem system = RandomSystem(40, 0, 2);
+  const Eigen::VectorXd before = system.dashpot;
+  EXPECT_TRUE(LimitDashpots(ComputeStabilityBound(system).timestep, &system));
+  EXPECT_EQ(system.dashpot, before);
+}
+
+TEST(LimitDashpots, SaysWhereSpringsAloneAreTooStiff) {
+  SpringMassSystem system = Row(12, 50, 0.1);
+  SpringMassSystem undamped = Row(12, 50, 0);
+  EXPECT_FALSE(LimitDashpots(1.1 * ComputeStabilityBound(undamped).timestep, &system));
+}
+
 TEST(Stability, SubstepsAreTheFewestBelowTheBound) {
   const StabilityBound bound{0, 0, 0.004};
   EXPECT_EQ(StableSubsteps(bound, 0.02, 1), 5);

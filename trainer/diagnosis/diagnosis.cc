@@ -120,7 +120,7 @@ class Loop {
   // The refit of common factors without a new effect; false if the model diverges.
   bool FitCommon(const std::vector<EffectValues>& known) {
     bodies_ = FitBodies(fitting_, known, kCommonShare.Part(0, 0.7));
-    std::vector<EffectFit> free = bodies_;
+    std::vector<EffectFit> free = bodies_.fitted;
     FitFreely(fitting_, kCommonShare.Part(0.7, 1), &free);
     if (free.empty()) return false;
     common_ = accepted_ = free[0];
@@ -150,6 +150,7 @@ class Loop {
     RefitSprings(stage.Part(kSearchPart, kTrainingPart), refitted);
     if (round == 0) before_ = accepted_;
     if (!found) return false;
+    if (chosen.track.held < with_springs.track.held) with_springs = chosen;
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
     const bool without_springs =
@@ -160,7 +161,7 @@ class Loop {
     }
     accepted_ = std::move(with_springs);
     common_ = chosen;
-    bodies_ = {chosen};
+    bodies_ = {{}, {chosen}};
     if (!trained_on_ || !options_.train_anew) return true;
     if (const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_)) {
       Offer(*anew);
@@ -207,9 +208,9 @@ class Loop {
   DiagnosisOptions options_;
   std::vector<const Effect*> effects_;
   int block_;
-  std::vector<EffectFit> bodies_;  // that effects are added to
-  EffectFit common_, accepted_;    // without and with the springs' own parameters
-  EffectFit before_;               // accepted_, without any new effect
+  FittedBodies bodies_;          // that effects are added to
+  EffectFit common_, accepted_;  // without and with the springs' own parameters
+  EffectFit before_;             // accepted_, without any new effect
   std::vector<EffectCandidate> candidates_;
 };
 

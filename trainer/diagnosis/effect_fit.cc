@@ -145,9 +145,8 @@ EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velo
                                          int threads) const {
   EffectProblem::Options options;
   options.threads = threads;
-  options.most_rate = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal
-                          ? kMostCommonRate
-                          : kMostRate;
+  options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
+  options.most_rate = options.limit_dashpots ? kMostCommonRate : kMostRate;
   options.controller_velocity = controller_velocity;
   // an observer is for finding the way, which needs fewer digits
   options.single_precision = gain > 0;
@@ -190,7 +189,7 @@ bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
   if (!problem->FixSubsteps(x)) return false;
   auto predicted = problem->Predict(x);
   if (!predicted) return false;
-  fit->system = problem->model().Apply(x);
+  fit->system = problem->SystemAt(x);
   fit->controller_velocity = bodies_[fit->body].controller_velocity;
   fit->predicted = std::move(*predicted);
   ScorePrediction(recordings_, fit);

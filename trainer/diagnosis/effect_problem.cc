@@ -43,8 +43,20 @@ EffectProblem::EffectProblem(EffectModel model, const std::vector<SplitRecording
   }
 }
 
+SpringMassSystem EffectProblem::SystemAt(const Eigen::VectorXd& x) const {
+  SpringMassSystem system = model_.Apply(x);
+  if (!options_.limit_dashpots) return system;
+  double rate = options_.most_rate;  // of whole sub-steps a frame
+  for (const SplitRecording& split : recordings_) {
+    const double fps = split.recording->fps;
+    rate = std::min(rate, std::floor(options_.most_rate / fps) * fps);
+  }
+  LimitDashpots(1 / (options_.safety * rate), &system);
+  return system;
+}
+
 bool EffectProblem::FixSubsteps(const Eigen::VectorXd& x) {
-  const StabilityBound bound = ComputeStabilityBound(model_.Apply(x));
+  const StabilityBound bound = ComputeStabilityBound(SystemAt(x));
   for (std::size_t i = 0; i < recordings_.size(); ++i) {
     const double fps = recordings_[i].recording->fps;
     substeps_[i] = StableSubsteps(bound, 1 / fps, options_.safety);
@@ -54,9 +66,8 @@ bool EffectProblem::FixSubsteps(const Eigen::VectorXd& x) {
 }
 
 std::optional<Eigen::VectorXd> EffectProblem::RollOutAll(
-    const Eigen::VectorXd& x, bool fit_only,
+    const SpringMassSystem& system, bool fit_only,
     std::vector<std::unique_ptr<Rollout>>* rollouts) const {
-  const SpringMassSystem system = model_.Apply(x);
   Eigen::VectorXd residuals(offset_.back());
   std::vector<char> diverged(recordings_.size(), 0);
   if (rollouts) rollouts->resize(recordings_.size());
@@ -86,8 +97,8 @@ std::optional<Eigen::VectorXd> EffectProblem::RollOutAll(
   return residuals;
 }
 
-bool EffectProblem::IsStable(const Eigen::VectorXd& x) const {
-  const StabilityBound bound = ComputeStabilityBound(model_.Apply(x));
+bool EffectProblem::IsStable(const SpringMassSystem& system) const {
+  const StabilityBound bound = ComputeStabilityBound(system);
   for (std::size_t i = 0; i < recordings_.size(); ++i) {
     const double fps = recordings_[i].recording->fps;
     if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps_[i]) return false;
@@ -97,21 +108,22 @@ bool EffectProblem::IsStable(const Eigen::VectorXd& x) const {
 }
 
 std::optional<Eigen::VectorXd> EffectProblem::Residuals(const Eigen::VectorXd& x) {
-  if (!IsStable(x)) return {};
-  return RollOutAll(x, true, nullptr);
+  const SpringMassSystem system = SystemAt(x);
+  if (!IsStable(system)) return {};
+  return RollOutAll(system, true, nullptr);
 }
 
 std::optional<Eigen::VectorXd> EffectProblem::Linearise(const Eigen::VectorXd& x) {
   if (!FixSubsteps(x)) return {};
   x_ = x;
-  auto residuals = RollOutAll(x, true, &rollouts_);
+  auto residuals = RollOutAll(SystemAt(x), true, &rollouts_);
   if (residuals) r_ = *residuals;
   return residuals;
 }
 
 Eigen::VectorXd EffectProblem::JacobianTimes(const Eigen::VectorXd& v) {
   const double step = options_.difference / std::max(1e-300, v.cwiseAbs().maxCoeff());
-  const auto moved = RollOutAll(x_ + step * v, true, nullptr);
+  const auto moved = RollOutAll(SystemAt(x_ + step * v), true, nullptr);
   if (!moved) return Eigen::VectorXd::Zero(r_.size());
   return (*moved - r_) / step;
 }
@@ -140,7 +152,7 @@ Eigen::VectorXd EffectProblem::JacobianTransposedTimes(const Eigen::VectorXd& u)
 std::optional<std::vector<std::vector<Points>>> EffectProblem::Predict(
     const Eigen::VectorXd& x) const {
   std::vector<std::unique_ptr<Rollout>> rollouts;
-  if (!RollOutAll(x, false, &rollouts)) return {};
+  if (!RollOutAll(SystemAt(x), false, &rollouts)) return {};
   std::vector<std::vector<Points>> predicted;
   for (const auto& rollout : rollouts) {
     predicted.push_back(rollout ? rollout->positions() : std::vector<Points>());

@@ -28,6 +28,9 @@ class EffectProblem : public LeastSquares {
     double safety = kStepSafety;  // sub-step as a part of the largest stable one
     double most_rate = 10000;     // sub-steps a second; a stiffer system cannot be evaluated
     double difference = 1e-5;     // longest entry of the step of J v; longer where contacts jump
+    // Dashpots that would need a higher rate are lowered, all by one factor. There is no adjoint of
+    // that.
+    bool limit_dashpots = false;
     int threads = 1;
     bool single_precision = false;
     double observer_gain = 0;  // corrects towards all that the recordings see, whatever its use
@@ -37,6 +40,7 @@ class EffectProblem : public LeastSquares {
                 const Options& options);
 
   const EffectModel& model() const { return model_; }
+  SpringMassSystem SystemAt(const Eigen::VectorXd& x) const;
 
   // The sub-steps that x needs, used from now on; false if that is too many.
   bool FixSubsteps(const Eigen::VectorXd& x);
@@ -52,8 +56,8 @@ class EffectProblem : public LeastSquares {
   std::optional<std::vector<std::vector<Points>>> Predict(const Eigen::VectorXd& x) const;
 
  private:
-  bool IsStable(const Eigen::VectorXd& x) const;
-  std::optional<Eigen::VectorXd> RollOutAll(const Eigen::VectorXd& x, bool fit_only,
+  bool IsStable(const SpringMassSystem& system) const;
+  std::optional<Eigen::VectorXd> RollOutAll(const SpringMassSystem& system, bool fit_only,
                                             std::vector<std::unique_ptr<Rollout>>* rollouts) const;
 
   EffectModel model_;

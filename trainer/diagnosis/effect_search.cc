@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kTracedEffects = 6;  // that are refitted at most ...
 constexpr double kLeastScore = 0.05;       // ... if the trace gives them such a part of the best
 constexpr int kSimplestDraws = 1000;
-constexpr double kTraceShare = 0.3;  // of the work of a search
+constexpr double kEarlyShare = 0.2, kTraceShare = 0.4;  // of the work of a search, until then
+constexpr double kStrong = 0.7;  // of the misfit without an effect, what a strong one leaves
 constexpr char kWithoutEffect[] = " without any new effect";
 
 // Steps of all fits, and how many of them go on after that: in all, and with one effect.
@@ -25,9 +26,13 @@ struct Cut {
   int steps;
   std::size_t kept, of_an_effect;
 };
-// Bodies without effects, down to the gain of the trace and down to none; with an effect.
-constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 5, 4, 4}, {0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
+// Bodies without effects: under the highest gain, down to the one of the trace, down to none; with
+// an effect: laws on the best body, then on all, from the trace on.
+constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 4, 4}}};
+constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
 constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 4, 2}}};
+constexpr std::array<Cut, 2> kEarlyCuts = {{{0.5, 5, 6, 3}, {0.2, 5, 3, 2}}};
 constexpr std::array<Cut, 4> kCuts = {
     {{0.1, 1, 8, 2}, {0.1, 2, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
 
@@ -60,6 +65,7 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* f
 // Successive halving; the best fit by misfit is the first one after it.
 void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const WorkShare& stage,
            const std::string& of, std::vector<EffectFit>* fits) {
+  if (fits->empty()) return;
   double done = 0, all = 0;  // steps, if each cut keeps as many as it may
   std::size_t count = fits->size();
   for (const Cut& cut : cuts) {
@@ -88,30 +94,67 @@ void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
   });
 }
 
+// Fits with laws of the springs that show under the highest gain, from there on.
+std::vector<EffectFit> FitLawsFromStart(const EffectFitting& fitting,
+                                        const std::vector<EffectFit>& bodies,
+                                        const std::vector<const Effect*>& effects,
+                                        const WorkShare& stage) {
+  std::vector<EffectFit> fits;
+  if (bodies.empty()) return fits;
+  const auto add = [&](const EffectFit& body, const EffectValues& law) {
+    std::vector<EffectValues> values = body.start;
+    values.push_back(law);
+    EffectFit fit = fitting.Begin(body.body, values);
+    if (fit.x.size() > 0) fits.push_back(std::move(fit));
+  };
+  const EffectFit& first = bodies.front();
+  for (const Effect* effect : effects) {
+    for (const Eigen::VectorXd& start : effect->Starts(fitting.Model(first).Apply(first.x))) {
+      if (effect->MakeTension(start)) add(first, {effect->name(), start});
+    }
+  }
+  Halve(fitting, kLawCuts, stage.Part(0, 0.4), " with another law", &fits);
+  std::vector<EffectValues> strong;
+  for (const EffectFit& fit : fits) {
+    if (fit.misfit < kStrong * first.misfit) strong.push_back(fit.start.back());
+  }
+  fits.clear();
+  for (const EffectValues& law : strong) {
+    for (const EffectFit& body : bodies) add(body, law);
+  }
+  Halve(fitting, kEarlyCuts, stage.Part(0.4, 1), " with another law", &fits);
+  return fits;
+}
+
 }  // namespace
 
-std::vector<EffectFit> FitBodies(const EffectFitting& fitting,
-                                 const std::vector<EffectValues>& known, const WorkShare& stage) {
-  std::vector<EffectFit> fits;
+FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectValues>& known,
+                       const WorkShare& stage) {
+  FittedBodies bodies;
+  std::vector<EffectFit>& fits = bodies.fitted;
   for (std::size_t body = 0; body < fitting.bodies().size(); ++body) {
     EffectFit fit = fitting.Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
-  if (!fits.empty()) Halve(fitting, kBodyCuts, stage, kWithoutEffect, &fits);
-  return fits;
+  Halve(fitting, kEarlyBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
+  bodies.early = fits;
+  Halve(fitting, kBodyCuts, stage.Part(0.3, 1), kWithoutEffect, &fits);
+  return bodies;
 }
 
 void FitFreely(const EffectFitting& fitting, const WorkShare& stage,
                std::vector<EffectFit>* bodies) {
-  if (!bodies->empty()) Halve(fitting, kFreeCuts, stage, kWithoutEffect, bodies);
+  Halve(fitting, kFreeCuts, stage, kWithoutEffect, bodies);
   JudgeAndSort(fitting, bodies);
 }
 
-EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
+EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects,
                                  const WorkShare& stage) {
   EffectSearchResult result;
-  result.traces = TraceEffects(fitting, bodies.front(), effects, stage.Part(0, kTraceShare));
+  result.fits = FitLawsFromStart(fitting, bodies.early, effects, stage.Part(0, kEarlyShare));
+  result.traces =
+      TraceEffects(fitting, bodies.fitted.front(), effects, stage.Part(kEarlyShare, kTraceShare));
   std::vector<std::size_t> order;
   for (std::size_t n = 0; n < effects.size(); ++n) {
     if (result.traces[n].start.size() > 0) order.push_back(n);
@@ -124,14 +167,14 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector
   std::erase_if(order, [&](std::size_t n) { return result.traces[n].score < least; });
   for (std::size_t n : order) {
     const EffectTrace& trace = result.traces[n];
-    for (const EffectFit& body : bodies) {
+    for (const EffectFit& body : bodies.fitted) {
       EffectFit fit = body;
       fit.start.push_back({trace.effect->name(), trace.start});
       fit.x.conservativeResizeLike(Eigen::VectorXd::Zero(body.x.size() + trace.start.size()));
       result.fits.push_back(std::move(fit));
     }
   }
-  if (!result.fits.empty()) Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &result.fits);
+  Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &result.fits);
   JudgeAndSort(fitting, &result.fits);
   // of each effect the body that predicts best
   std::map<std::string, int> seen;

@@ -4,6 +4,11 @@
 // missing has no time to add up; with a low one it is the effect's. So bodies are chosen first.
 // Then each of the effects that the trace ranks first is tried on each body that is left, all are
 // fitted for a few steps, the better part goes on with a lower gain (successive halving).
+//
+// A body fitted without a law of its springs that it has may be bent to a corner from which no fit
+// with the law comes back (a block whose springs yield is fitted as one of high damping). So laws
+// of the springs are tried from the start on, too, on bodies not fitted yet, and those that show
+// under the highest gain meet the others where the trace is.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 
@@ -17,10 +22,14 @@ namespace physpring {
 
 // `stage`, here and below: the share of the work, for the journal.
 
-// The bodies that fit best with the effects that are known, fitted down to the gain of the trace;
-// the best first. Those that diverge are left out.
-std::vector<EffectFit> FitBodies(const EffectFitting& fitting,
-                                 const std::vector<EffectValues>& known, const WorkShare& stage);
+// The bodies that fit best with the effects that are known, the best first. Those that diverge are
+// left out.
+struct FittedBodies {
+  std::vector<EffectFit> early;   // under the highest gain; none after an effect was found
+  std::vector<EffectFit> fitted;  // down to the gain of the trace
+};
+FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectValues>& known,
+                       const WorkShare& stage);
 
 // Fits them without an observer and judges them, least held-out error first.
 void FitFreely(const EffectFitting& fitting, const WorkShare& stage,
@@ -31,8 +40,8 @@ struct EffectSearchResult {
   std::vector<EffectFit> fits;      // of the best effects, judged, least held-out error first
 };
 
-// `bodies`: fits without the effect, the best first; at least one.
-EffectSearchResult SearchEffects(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
+// `bodies`: fits without the effect; at least one that is fitted.
+EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
 // Which of `fits` to take: of those whose held-out error is within one standard error (of the
