@@ -9,6 +9,12 @@ function(physpring_room name)
   target_link_libraries(physpring_${name} PUBLIC physpring_options ${room_LIBS})
 endfunction()
 
+# The work is in the rooms: compiling the tests took more time than running them.
+function(physpring_test_options name)
+  target_compile_definitions(${name} PRIVATE PHYSPRING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1;-g0>)
+endfunction()
+
 # physpring_test(twin/npz_test.cc LIBS physpring_twin [LABELS slow] [SUPPORT more.cc ...])
 # makes the program twin_npz_test and one CTest test for each TEST in it. Tests with the label
 # `slow` are left out of the default suite.
@@ -26,9 +32,8 @@ function(physpring_test source)
   add_executable(${name} ${source} ${test_SUPPORT})
   target_link_libraries(${name} PRIVATE
     physpring_options physpring_test_support ${test_LIBS} GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE PHYSPRING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # the work is in the rooms: compiling the tests took more time than running them
-  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1;-g0>)
+  physpring_test_options(${name})
+  target_precompile_headers(${name} REUSE_FROM physpring_test_headers)
   gtest_discover_tests(${name}
     TEST_PREFIX "${name}."
     DISCOVERY_MODE PRE_TEST
