@@ -78,7 +78,7 @@ std::string PartsOf(const ProgramResult& result) {
   std::string parts, part;
   std::getline(line, part, ',');  // the whole
   while (std::getline(line, part, ',')) {
-    if (!parts.empty()) parts += ",";
+    if (!parts.empty()) parts += ',';
     parts += part.substr(0, part.find_first_of("0123456789", 1) - 1);
   }
   return parts.substr(std::min<std::size_t>(1, parts.size()));

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "rollout/mujoco_log.h"
+#include "twin/effects/registry.h"
 
 namespace physpring {
 namespace {
@@ -44,6 +46,23 @@ std::string ControllerBody(const SpringMassSystem& system, int column) {
                      position[1], position[2], column);
 }
 
+// Effects add attributes to a tendon or replace them.
+std::string TendonAttributes(const SpringMassSystem& system, int e) {
+  std::map<std::string, std::string> attributes = {
+      {"stiffness", fmt::format("{}", system.stiffness[e])},
+      {"damping", fmt::format("{}", system.dashpot[e])},
+      {"springlength", fmt::format("{}", system.rest_length[e])}};
+  for (const EffectValues& effect : system.effects) {
+    const EffectMjcf mjcf = GetEffect(effect.name).Mjcf(effect.values, system);
+    for (const auto& [name, value] : mjcf.tendon.at(static_cast<std::size_t>(e))) {
+      attributes[name] = value;
+    }
+  }
+  std::string text;
+  for (const auto& [name, value] : attributes) text += fmt::format(R"( {}="{}")", name, value);
+  return text;
+}
+
 }  // namespace
 
 std::string TendonMjcf(const SpringMassSystem& system, const Eigen::Vector3d& gravity,
@@ -55,9 +74,8 @@ std::string TendonMjcf(const SpringMassSystem& system, const Eigen::Vector3d& gr
   }
   for (int e = 0; e < system.spring_count(); ++e) {
     const auto& [a, b] = system.springs[static_cast<std::size_t>(e)];
-    tendons += fmt::format(R"(<spatial stiffness="{}" damping="{}" springlength="{}">)"
-                           R"(<site site="{}"/><site site="{}"/></spatial>)",
-                           system.stiffness[e], system.dashpot[e], system.rest_length[e], a, b);
+    tendons += fmt::format(R"(<spatial{}><site site="{}"/><site site="{}"/></spatial>)",
+                           TendonAttributes(system, e), a, b);
   }
   return fmt::format(R"(
     <mujoco>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same spring-mass system in MuJoCo's own terms, as an oracle for the simulator: nodes are
 // bodies with three slide joints, springs are spatial tendons, controllers are mocap bodies.
-// Euler's integrator, no contacts.
+// Euler's integrator, no contacts. Effects are those that are attributes of a tendon.
 //
 // MuJoCo takes joint damping c implicitly, v' = (m v + h F) / (m + h c), so that
 // c = m (exp(h drag) - 1) / h is exactly the decay exp(-h drag). Mocap bodies have no velocity: the

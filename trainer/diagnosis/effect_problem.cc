@@ -34,9 +34,12 @@ EffectProblem::EffectProblem(EffectModel model, const std::vector<SplitRecording
     : model_(std::move(model)),
       recordings_(recordings),
       options_(options),
+      shortest_step_(1 / options.most_rate),
       substeps_(recordings.size(), 1),
       offset_{0} {
   for (const SplitRecording& split : recordings_) {
+    const double fps = split.recording->fps;
+    shortest_step_ = std::max(shortest_step_, 1 / (std::floor(options.most_rate / fps) * fps));
     std::size_t seen = 0;
     ForEachSeen(split, Use::kFit, [&](int, int) { ++seen; });
     offset_.push_back(offset_.back() + 3 * seen);
@@ -45,13 +48,7 @@ EffectProblem::EffectProblem(EffectModel model, const std::vector<SplitRecording
 
 SpringMassSystem EffectProblem::SystemAt(const Eigen::VectorXd& x) const {
   SpringMassSystem system = model_.Apply(x);
-  if (!options_.limit_dashpots) return system;
-  double rate = options_.most_rate;  // of whole sub-steps a frame
-  for (const SplitRecording& split : recordings_) {
-    const double fps = split.recording->fps;
-    rate = std::min(rate, std::floor(options_.most_rate / fps) * fps);
-  }
-  LimitDashpots(1 / (options_.safety * rate), &system);
+  if (options_.limit_dashpots) LimitDashpots(shortest_step_ / options_.safety, &system);
   return system;
 }
 

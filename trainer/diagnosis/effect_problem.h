@@ -63,6 +63,7 @@ class EffectProblem : public LeastSquares {
   EffectModel model_;
   const std::vector<SplitRecording>& recordings_;
   Options options_;
+  double shortest_step_;             // s: all recordings' frames have a whole number of such
   std::vector<int> substeps_;        // of each recording
   std::vector<std::size_t> offset_;  // of each recording's residuals; the last one: their number
   // the point of linearisation

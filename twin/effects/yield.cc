@@ -74,7 +74,12 @@ class Yield : public Effect {
     return std::make_unique<LawTension<YieldLaw>>(values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
-    EffectMjcf mjcf{EffectMjcf::Carrier::kTendon, {}, {}, ""};
+    EffectMjcf mjcf{
+        EffectMjcf::Carrier::kTendon,
+        {},
+        {},
+        "MuJoCo lets the springs of a mocap body pass the threshold by how far it moves "
+        "in a time step"};
     for (int e = 0; e < system.spring_count(); ++e) {
       const double threshold = values[0] + values[1] * system.rest_length[e];
       mjcf.tendon.push_back({{"springyield", fmt::format("{}", threshold)}});
