@@ -2,7 +2,7 @@
 // Does the diagnosis find what is missing? Bodies of tendons in MuJoCo, each with one undeclared
 // effect or with none, are diagnosed; every case is a line of a file, and what is in the file
 // already is not done again:
-//   recovery_study cases.jsonl [--clean 100] [--seeds 1] [--share I/N]
+//   recovery_study cases.jsonl [--clean 100] [--seeds 1] [--share I/N] [--only TEXT]
 // then prints, from all cases in the file, how often each effect was found first and what was found
 // instead.
 #include <fmt/format.h>
@@ -76,7 +76,17 @@ Json Run(const Case& one) {
   const std::clock_t begin = std::clock();
   const Diagnosis diagnosis = Diagnose(TwinOf(made.fit), {made.fit}, {made.other}, options);
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  Json ranking = Json::array();  // of what was refitted
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
+    if (candidate.refit) {
+      ranking.push_back({{"name", candidate.name},
+                         {"held", candidate.refit->held},
+                         {"trace", candidate.score},
+                         {"p", candidate.gain.p}});
+    }
+  }
   return {{"case", one.Name()},
+          {"ranking", ranking},
           {"effect", one.effect},
           {"noise", one.noise},
           {"found", diagnosis.effects.empty() ? "none" : diagnosis.effects[0].name},
@@ -119,7 +129,8 @@ void PrintTable(const std::vector<Json>& cases) {
   }
 }
 
-void Study(const std::string& path, int seeds, int clean, const std::string& share) {
+void Study(const std::string& path, int seeds, int clean, const std::string& share,
+           const std::string& only) {
   std::vector<Json> done;
   std::set<std::string> known;
   std::ifstream in(path);
@@ -135,6 +146,7 @@ void Study(const std::string& path, int seeds, int clean, const std::string& sha
   const std::vector<Case> cases = Cases(seeds, clean);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (static_cast<int>(i) % of != index || known.contains(cases[i].Name())) continue;
+    if (cases[i].Name().find(only) == std::string::npos) continue;
     const Json row = Run(cases[i]);
     std::ofstream(path, std::ios::app) << row.dump() << "\n";
     fmt::print(stderr, "{}\n", row.dump());
@@ -148,15 +160,16 @@ void Study(const std::string& path, int seeds, int clean, const std::string& sha
 
 int main(int argc, char** argv) {
   CLI::App app("How often the diagnosis finds what is missing.");
-  std::string path, share;
+  std::string path, share, only;
   int clean = 100, seeds = 1;
   app.add_option("cases", path, "file of cases, one JSON object a line")->required();
   app.add_option("--clean", clean, "cases without an effect");
   app.add_option("--seeds", seeds, "cases of each effect, body and noise");
   app.add_option("--share", share, "only every Nth case, from the Ith on: I/N");
+  app.add_option("--only", only, "only cases whose name (body effect noise seed) has this in it");
   CLI11_PARSE(app, argc, argv);
   try {
-    physpring::Study(path, seeds, clean, share);
+    physpring::Study(path, seeds, clean, share, only);
   } catch (const physpring::Error& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return 1;
