@@ -58,6 +58,7 @@ bool EffectProblem::FixSubsteps(const Eigen::VectorXd& x) {
     const double fps = recordings_[i].recording->fps;
     substeps_[i] = StableSubsteps(bound, 1 / fps, options_.safety);
     if (substeps_[i] * fps > options_.most_rate) return false;
+    substeps_[i] = std::max(substeps_[i], static_cast<int>(std::ceil(options_.least_rate / fps)));
   }
   return true;
 }

@@ -26,7 +26,8 @@ class EffectProblem : public LeastSquares {
   struct Options {
     bool controller_velocity = true;
     double safety = kStepSafety;  // sub-step as a part of the largest stable one
-    double most_rate = 10000;     // sub-steps a second; a stiffer system cannot be evaluated
+    double least_rate = 0;        // sub-steps a second
+    double most_rate = 10000;     // the same; a stiffer system cannot be evaluated
     double difference = 1e-5;     // longest entry of the step of J v; longer where contacts jump
     // Dashpots that would need a higher rate are lowered, all by one factor. There is no adjoint of
     // that.
