@@ -69,7 +69,7 @@ Twin TwinOf(const Recording& recording) {
 
 Json Run(const Case& one) {
   const std::uint64_t seed = std::hash<std::string>()(one.Name());
-  const MadeRecordings made = MakeWithEffect(one.body, one.effect, one.noise, seed);
+  const MadeRecordings made = MakeWithEffect(one.body, one.effect, getenv("PHYS_NOISE") ? atof(getenv("PHYS_NOISE")) : one.noise, seed);
   DiagnosisOptions options;
   options.most_effects = 1;
   options.train_anew = false;  // which effect it is does not depend on it

@@ -14,7 +14,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kFrames = 75, kSteps = 40;  // steps of MuJoCo a frame
+constexpr int kFrames = 75, kSteps = 100;  // steps of MuJoCo a frame
 constexpr double kFps = 50, kTimestep = 1 / (kFps * kSteps);
 constexpr double kMass = 0.03;         // kg, of the body
 constexpr double kYoung = 1;           // N: stiffness times length of the shortest springs
@@ -168,7 +168,8 @@ SceneEffects MakeEffect(const std::string& effect, double size, const Lattice& l
   return e;
 }
 
-// Where the hands are: sums of sines from rest.
+// Where the hands are: at the frames on sums of sines from rest, between them on straight lines, as
+// a recording tells it.
 class Hands {
  public:
   explicit Hands(Random* random) {
@@ -179,6 +180,12 @@ class Hands {
     }
   }
   Eigen::Vector3d At(double time) const {
+    const double frame = std::floor(time * kFps + 1e-9), way = time * kFps - frame;
+    return (1 - way) * Curve(frame / kFps) + way * Curve((frame + 1) / kFps);
+  }
+
+ private:
+  Eigen::Vector3d Curve(double time) const {
     Eigen::Vector3d moved;
     for (int axis = 0; axis < 3; ++axis) {
       moved[axis] = amplitude_[axis] *
@@ -188,7 +195,6 @@ class Hands {
     return time > 0 ? moved : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
- private:
   Eigen::Vector3d amplitude_, rate_, phase_;
 };
 

@@ -148,8 +148,11 @@ class Loop {
     if (round == 0 && !accepted_.trained) refitted.push_back(&accepted_);
     if (found) refitted.push_back(&with_springs);
     RefitSprings(stage.Part(kSearchPart, kTrainingPart), refitted);
-    if (round == 0) before_ = accepted_;
-    if (!found) return false;
+    if (round == 0) {
+      Offer(common_);
+      before_ = accepted_;
+    }
+    if (!found || chosen.track.held >= common_.track.held) return false;
     if (chosen.track.held < with_springs.track.held) with_springs = chosen;
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain

@@ -13,12 +13,15 @@
 namespace physpring {
 namespace {
 
-constexpr std::size_t kTracedEffects = 6;  // that are refitted at most ...
+constexpr std::size_t kTracedEffects = 6;  // on fitted bodies that are refitted at most ...
 constexpr double kLeastScore = 0.05;       // ... if the trace gives them such a part of the best
+constexpr std::size_t kEarlyBodies = 2;    // that effects are tried on from the start on
+constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
 constexpr int kSimplestDraws = 1000;
-constexpr double kEarlyShare = 0.2, kTraceShare = 0.4;  // of the work of a search, until then
-constexpr double kStrong = 0.7;  // of the misfit without an effect, what a strong one leaves
-constexpr char kWithoutEffect[] = " without any new effect";
+constexpr double kEarlyShare = 0.4, kTraceShare = 0.5;  // of the work of a search, until then
+constexpr double kStrong = 0.7;  // of the misfit without an effect, what a strong law leaves
+constexpr std::size_t kMostStrong = 4;
+constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
 // Steps of all fits, and how many of them go on after that: in all, and with one effect.
 struct Cut {
@@ -26,18 +29,19 @@ struct Cut {
   int steps;
   std::size_t kept, of_an_effect;
 };
-// Bodies without effects: under the highest gain, down to the one of the trace, down to none; with
-// an effect: laws on the best body, then on all, from the trace on.
+// Bodies without effects: under the highest gain, down to the one of the trace, down to none; laws
+// on the best body, strong ones on all; all effects before the trace, and after it.
 constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 4, 4}}};
 constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
 constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 4, 2}}};
-constexpr std::array<Cut, 2> kEarlyCuts = {{{0.5, 5, 6, 3}, {0.2, 5, 3, 2}}};
-constexpr std::array<Cut, 4> kCuts = {
-    {{0.1, 1, 8, 2}, {0.1, 2, 6, 2}, {0.05, 3, 4, 2}, {0, 8, 4, 2}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 2}}}, kStrongCuts = {{{0.5, 5, 6, 3}}};
+constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
+constexpr std::array<Cut, 3> kCuts = {{{0.1, 2, 10, 2}, {0.05, 3, 6, 2}, {0, 12, 6, 2}}};
 
 // Under an observer, a misfit so many times the least one is hopeless.
 constexpr double kHopeless = 4;
+// An effect of more parameters takes the shape of others. It does not compete with them.
+constexpr Eigen::Index kFreeForm = 20;
 
 std::string NewEffect(const EffectFit& fit) {
   return fit.start.empty() ? "" : fit.start.back().name;
@@ -49,16 +53,23 @@ Eigen::Index ParameterCount(const EffectFit& fit) {
   return count;
 }
 
-// The best by misfit.
+bool IsFreeForm(const EffectFit& fit) {
+  return !fit.start.empty() && fit.start.back().values.size() > kFreeForm;
+}
+
+// The best by misfit, and the best free-form one.
 void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* fits) {
   std::stable_sort(fits->begin(), fits->end(),
                    [](const EffectFit& p, const EffectFit& q) { return p.misfit < q.misfit; });
   std::map<std::string, std::size_t> kept;
-  std::erase_if(*fits,
-                [&](const EffectFit& fit) { return kept[NewEffect(fit)]++ >= of_an_effect; });
-  fits->resize(std::min(fits->size(), count));
-  std::erase_if(*fits, [least = fits->empty() ? 0 : fits->front().misfit](const EffectFit& fit) {
-    return fit.misfit > kHopeless * least;
+  std::erase_if(*fits, [&](const EffectFit& fit) {
+    return kept[NewEffect(fit)]++ >= (IsFreeForm(fit) ? 1 : of_an_effect);
+  });
+  const auto best = std::find_if_not(fits->begin(), fits->end(), IsFreeForm);
+  const double most = best == fits->end() ? 0 : kHopeless * best->misfit;
+  std::size_t others = 0;
+  std::erase_if(*fits, [&](const EffectFit& fit) {
+    return !IsFreeForm(fit) && (others++ >= count || fit.misfit > most);
   });
 }
 
@@ -94,13 +105,18 @@ void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
   });
 }
 
-// Fits with laws of the springs that show under the highest gain, from there on.
-std::vector<EffectFit> FitLawsFromStart(const EffectFitting& fitting,
-                                        const std::vector<EffectFit>& bodies,
-                                        const std::vector<const Effect*>& effects,
-                                        const WorkShare& stage) {
+// The fit with one more effect, from where the fit is.
+EffectFit With(const EffectFit& fit, const EffectTrace& trace) {
+  EffectFit with = fit;
+  with.start.push_back({trace.effect->name(), trace.start});
+  with.x.conservativeResizeLike(Eigen::VectorXd::Zero(fit.x.size() + trace.start.size()));
+  return with;
+}
+
+// Laws of the springs change bodies so much that these begin anew.
+std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
+                               const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<EffectFit> fits;
-  if (bodies.empty()) return fits;
   const auto add = [&](const EffectFit& body, const EffectValues& law) {
     std::vector<EffectValues> values = body.start;
     values.push_back(law);
@@ -113,16 +129,39 @@ std::vector<EffectFit> FitLawsFromStart(const EffectFitting& fitting,
       if (effect->MakeTension(start)) add(first, {effect->name(), start});
     }
   }
-  Halve(fitting, kLawCuts, stage.Part(0, 0.4), " with another law", &fits);
+  Halve(fitting, kLawCuts, stage.Part(0, 0.5), kWithLaw, &fits);
   std::vector<EffectValues> strong;
   for (const EffectFit& fit : fits) {
     if (fit.misfit < kStrong * first.misfit) strong.push_back(fit.start.back());
   }
+  if (strong.empty()) {
+    Keep(fits.size(), 1, &fits);
+    return fits;
+  }
+  strong.resize(std::min(strong.size(), kMostStrong));
   fits.clear();
   for (const EffectValues& law : strong) {
     for (const EffectFit& body : bodies) add(body, law);
   }
-  Halve(fitting, kEarlyCuts, stage.Part(0.4, 1), " with another law", &fits);
+  Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
+  return fits;
+}
+
+// Fits with effects on bodies that were fitted under the highest gain only.
+std::vector<EffectFit> FitFromStart(const EffectFitting& fitting,
+                                    const std::vector<EffectFit>& bodies,
+                                    const std::vector<const Effect*>& effects,
+                                    const WorkShare& stage) {
+  if (bodies.empty()) return {};
+  std::vector<EffectFit> fits = FitLaws(fitting, bodies, effects, stage.Part(0, 0.3));
+  for (const EffectTrace& trace :
+       TraceEffects(fitting, bodies.front(), effects, kEarlyTraceGain, stage.Part(0.3, 0.5))) {
+    if (trace.start.size() == 0 || trace.effect->MakeTension(trace.start)) continue;
+    for (std::size_t i = 0; i < std::min(bodies.size(), kEarlyBodies); ++i) {
+      fits.push_back(With(bodies[i], trace));
+    }
+  }
+  Halve(fitting, kEarlyCuts, stage.Part(0.5, 1), " from the start on", &fits);
   return fits;
 }
 
@@ -152,9 +191,9 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodie
                                  const std::vector<const Effect*>& effects,
                                  const WorkShare& stage) {
   EffectSearchResult result;
-  result.fits = FitLawsFromStart(fitting, bodies.early, effects, stage.Part(0, kEarlyShare));
-  result.traces =
-      TraceEffects(fitting, bodies.fitted.front(), effects, stage.Part(kEarlyShare, kTraceShare));
+  result.fits = FitFromStart(fitting, bodies.early, effects, stage.Part(0, kEarlyShare));
+  result.traces = TraceEffects(fitting, bodies.fitted.front(), effects, kTraceGain,
+                               stage.Part(kEarlyShare, kTraceShare));
   std::vector<std::size_t> order;
   for (std::size_t n = 0; n < effects.size(); ++n) {
     if (result.traces[n].start.size() > 0) order.push_back(n);
@@ -166,13 +205,7 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodie
   const double least = order.empty() ? 0 : kLeastScore * result.traces[order.front()].score;
   std::erase_if(order, [&](std::size_t n) { return result.traces[n].score < least; });
   for (std::size_t n : order) {
-    const EffectTrace& trace = result.traces[n];
-    for (const EffectFit& body : bodies.fitted) {
-      EffectFit fit = body;
-      fit.start.push_back({trace.effect->name(), trace.start});
-      fit.x.conservativeResizeLike(Eigen::VectorXd::Zero(body.x.size() + trace.start.size()));
-      result.fits.push_back(std::move(fit));
-    }
+    for (const EffectFit& body : bodies.fitted) result.fits.push_back(With(body, result.traces[n]));
   }
   Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &result.fits);
   JudgeAndSort(fitting, &result.fits);

@@ -2,13 +2,13 @@
 // The search for the effect that a model lacks, together with the body that it belongs to, under an
 // observer whose gain falls (observer.h): with a high gain the misfit is the body's, since what is
 // missing has no time to add up; with a low one it is the effect's. So bodies are chosen first.
-// Then each of the effects that the trace ranks first is tried on each body that is left, all are
-// fitted for a few steps, the better part goes on with a lower gain (successive halving).
 //
-// A body fitted without a law of its springs that it has may be bent to a corner from which no fit
-// with the law comes back (a block whose springs yield is fitted as one of high damping). So laws
-// of the springs are tried from the start on, too, on bodies not fitted yet, and those that show
-// under the highest gain meet the others where the trace is.
+// A body fitted on without what it lacks bends to make up for it: a block whose springs yield
+// becomes one of high damping, and no step with the effect leads back from there. So effects are
+// tried twice: from the start on, on bodies fitted under the highest gain only, from where a trace
+// says (laws of the springs, of which one linear step says little, by two steps from each of their
+// starts); and those that a trace ranks first on the bodies fitted on. From the gain of that trace
+// on all go down together, the better part at a time (successive halving).
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 

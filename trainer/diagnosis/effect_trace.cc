@@ -11,7 +11,6 @@
 namespace physpring {
 namespace {
 
-constexpr double kGain = 0.1;       // of the observer
 constexpr std::size_t kStarts = 2;  // of an effect that are looked at closely
 constexpr double kLongestStep = 1.5;
 
@@ -23,11 +22,12 @@ struct Job {
 
 class Tracer {
  public:
-  Tracer(const EffectFitting& fitting, const EffectFit& fit) : fitting_(fitting), fit_(fit) {}
+  Tracer(const EffectFitting& fitting, const EffectFit& fit, double gain)
+      : fitting_(fitting), fit_(fit), gain_(gain) {}
 
   // The point to trace from; false if it cannot be evaluated.
   bool Prepare() {
-    EffectProblem own = fitting_.Problem(fit_, kGain);
+    EffectProblem own = fitting_.Problem(fit_, gain_);
     if (!own.FixSubsteps(fit_.x)) return false;
     const auto r = own.Residuals(fit_.x);
     if (!r || r->size() == 0) return false;
@@ -70,7 +70,7 @@ class Tracer {
   EffectProblem Add(const Effect& effect, const Eigen::VectorXd& start) const {
     EffectFit with = fit_;
     with.start.push_back({effect.name(), start});
-    return fitting_.Problem(with, kGain);
+    return fitting_.Problem(with, gain_);
   }
   Eigen::VectorXd Extend(const Eigen::VectorXd& start) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(fit_.x.size() + start.size());
@@ -113,6 +113,7 @@ class Tracer {
 
   const EffectFitting& fitting_;
   const EffectFit& fit_;
+  const double gain_;
   Eigen::VectorXd r_;
   Eigen::MatrixXd j0_;  // the model's own columns
   Eigen::LDLT<Eigen::MatrixXd> normal0_;
@@ -122,11 +123,11 @@ class Tracer {
 }  // namespace
 
 std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const EffectFit& fit,
-                                      const std::vector<const Effect*>& effects,
+                                      const std::vector<const Effect*>& effects, double gain,
                                       const WorkShare& stage) {
   std::vector<EffectTrace> traces;
   for (const Effect* effect : effects) traces.push_back({effect, 0, {}});
-  Tracer tracer(fitting, fit);
+  Tracer tracer(fitting, fit, gain);
   if (!tracer.Prepare()) return traces;
   const SpringMassSystem system = fitting.Model(fit).Apply(fit.x);
   std::vector<Job> jobs;
@@ -138,9 +139,9 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
       Job& job = jobs[static_cast<std::size_t>(n)];
       const Effect& effect = *effects[job.effect];
       PieceKey key = KeyOf(kind, fit);
-      job.score = fitting.journal().Get(key.Add(fit.x).Add(effect.name()).Add(job.start), [&] {
-        return Eigen::VectorXd::Constant(1, score(effect, job.start));
-      })[0];
+      job.score = fitting.journal().Get(
+          key.Add(gain).Add(fit.x).Add(effect.name()).Add(job.start),
+          [&] { return Eigen::VectorXd::Constant(1, score(effect, job.start)); })[0];
     });
   };
   fitting.journal().Stage(stage.Part(0, 0.4), static_cast<int>(jobs.size()), "tracing the effects");

@@ -20,9 +20,10 @@ struct EffectTrace {
   Eigen::VectorXd start;  // empty if the effect cannot be evaluated here
 };
 
-// Of each of `effects` added to `fit`, in their order. `stage`: its share of the work.
+// Of each of `effects` added to `fit`, in their order, under an observer of this gain. `stage`: its
+// share of the work.
 std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const EffectFit& fit,
-                                      const std::vector<const Effect*>& effects,
+                                      const std::vector<const Effect*>& effects, double gain,
                                       const WorkShare& stage);
 
 }  // namespace physpring

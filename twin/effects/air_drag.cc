@@ -58,8 +58,15 @@ class AirDrag : public Effect {
             {"wind_z_m_per_s", -30, 30, 1}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const override {
-    // a terminal velocity of 10 m/s
-    return {Eigen::Vector4d(0.1 * system.mass.sum(), 0, 0, 0)};
+    // a terminal velocity of 10 m/s; the air still, or a wind that pushes with a tenth of the
+    // weight
+    const double drag = 0.1 * system.mass.sum(), wind = 3;
+    std::vector<Eigen::VectorXd> starts = {Eigen::Vector4d(drag, 0, 0, 0)};
+    for (const double side : {-wind, wind}) {
+      starts.emplace_back(Eigen::Vector4d(drag, side, 0, 0));
+      starts.emplace_back(Eigen::Vector4d(drag, 0, side, 0));
+    }
+    return starts;
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
