@@ -156,7 +156,7 @@ std::vector<EffectFit> FitFromStart(const EffectFitting& fitting,
   std::vector<EffectFit> fits = FitLaws(fitting, bodies, effects, stage.Part(0, 0.3));
   for (const EffectTrace& trace :
        TraceEffects(fitting, bodies.front(), effects, kEarlyTraceGain, stage.Part(0.3, 0.5))) {
-    if (trace.start.size() == 0 || trace.effect->MakeTension(trace.start)) continue;
+    if (trace.start.size() == 0) continue;
     for (std::size_t i = 0; i < std::min(bodies.size(), kEarlyBodies); ++i) {
       fits.push_back(With(bodies[i], trace));
     }

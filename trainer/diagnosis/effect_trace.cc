@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kStarts = 2;  // of an effect that are looked at closely
 constexpr double kLongestStep = 1.5;
+constexpr double kNone = -std::numeric_limits<double>::infinity();  // where nothing is predicted
 
 struct Job {
   std::size_t effect;
@@ -44,9 +46,9 @@ class Tracer {
   double Response(const Effect& effect, const Eigen::VectorXd& start) const {
     EffectProblem problem = Add(effect, start);
     const Eigen::VectorXd x = Extend(start);
-    if (!problem.FixSubsteps(x)) return -1;
+    if (!problem.FixSubsteps(x)) return kNone;
     const auto at = problem.Residuals(x);
-    if (!at) return -1;
+    if (!at) return kNone;
     Eigen::VectorXd response = *at - r_;
     response -= j0_ * normal0_.solve(j0_.transpose() * response);
     const double along = -response.dot(r_);
@@ -57,9 +59,9 @@ class Tracer {
   double Score(const Effect& effect, const Eigen::VectorXd& start) const {
     EffectProblem problem = Add(effect, start);
     const Eigen::VectorXd x = Extend(start);
-    if (!problem.FixSubsteps(x)) return -1;
+    if (!problem.FixSubsteps(x)) return kNone;
     const auto at = problem.Residuals(x);
-    if (!at) return -1;
+    if (!at) return kNone;
     const int own = static_cast<int>(fit_.x.size()), added = static_cast<int>(start.size());
     Eigen::MatrixXd j(r_.size(), own + added);
     j << j0_, Columns(&problem, x, *at, own, added, 1);
@@ -152,18 +154,19 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
     return p.effect != q.effect ? p.effect < q.effect : p.score > q.score;
   });
   std::vector<std::size_t> kept(effects.size(), 0);
-  std::erase_if(jobs,
-                [&](const Job& job) { return job.score < 0 || kept[job.effect]++ >= kStarts; });
+  std::erase_if(
+      jobs, [&](const Job& job) { return job.score == kNone || kept[job.effect]++ >= kStarts; });
   fitting.journal().Stage(stage.Part(0.4, 1), static_cast<int>(jobs.size()), "tracing the effects");
   for_each_job("score", [&](const Effect& effect, const Eigen::VectorXd& start) {
     return tracer.Score(effect, start);
   });
   for (const Job& job : jobs) {
     EffectTrace& trace = traces[job.effect];
-    if (job.score < 0 || (trace.start.size() > 0 && job.score <= trace.score)) continue;
+    if (job.score == kNone || (trace.start.size() > 0 && job.score <= trace.score)) continue;
     trace.score = job.score;
     trace.start = job.start;
   }
+  for (EffectTrace& trace : traces) trace.score = std::max(0.0, trace.score);
   return traces;
 }
 
