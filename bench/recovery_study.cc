@@ -3,8 +3,8 @@
 // effect or with none, are diagnosed; every case is a line of a file, and what is in the file
 // already is not done again:
 //   recovery_study cases.jsonl [--clean 100] [--seeds 1] [--share I/N] [--only TEXT]
-// then prints, from all cases in the file, how often each effect was found first and what was found
-// instead.
+// then prints, from all cases in the file, how often each effect was ranked first and was added,
+// and what was added instead.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -69,7 +69,7 @@ Twin TwinOf(const Recording& recording) {
 
 Json Run(const Case& one) {
   const std::uint64_t seed = std::hash<std::string>()(one.Name());
-  const MadeRecordings made = MakeWithEffect(one.body, one.effect, getenv("PHYS_NOISE") ? atof(getenv("PHYS_NOISE")) : one.noise, seed);
+  const MadeRecordings made = MakeWithEffect(one.body, one.effect, one.noise, seed);
   DiagnosisOptions options;
   options.most_effects = 1;
   options.train_anew = false;  // which effect it is does not depend on it
@@ -102,13 +102,15 @@ void PrintTable(const std::vector<Json>& cases) {
   std::map<std::string, std::vector<Json>> by_effect;
   for (const Json& one : cases) by_effect[one["effect"]].push_back(one);
   fmt::print(
-      "| effect | cases | moved by, mm | found first | instead | unexplained | before, mm | "
-      "after, mm | CPU, s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "| effect | cases | moved by, mm | ranked first | added | added instead | unexplained | "
+      "before, mm | after, mm | CPU, s |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const auto& [effect, rows] : by_effect) {
-    int found = 0, unexplained = 0;
+    int first = 0, found = 0, unexplained = 0;
     double before = 0, after = 0, moved = 0, seconds = 0;
     std::map<std::string, int> instead;
     for (const Json& row : rows) {
+      first += !row["ranking"].empty() && row["ranking"][0]["name"] == effect ? 1 : 0;
       if (row["found"] == effect) {
         ++found;
       } else {
@@ -123,9 +125,9 @@ void PrintTable(const std::vector<Json>& cases) {
       others += fmt::format("{}{} {}", others.empty() ? "" : ", ", count, name);
     }
     const double per = 1 / static_cast<double>(rows.size());
-    fmt::print("| {} | {} | {:.1f} | {} | {} | {} | {:.2f} | {:.2f} | {:.1f} |\n", effect,
-               rows.size(), 1e3 * moved * per, found, others, unexplained, 1e3 * before * per,
-               1e3 * after * per, seconds * per);
+    fmt::print("| {} | {} | {:.1f} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.1f} |\n", effect,
+               rows.size(), 1e3 * moved * per, first, found, others, unexplained,
+               1e3 * before * per, 1e3 * after * per, seconds * per);
   }
 }
 
