@@ -34,7 +34,8 @@ struct Cut {
 constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 4, 4}}};
 constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
 constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 2}}}, kStrongCuts = {{{0.5, 5, 6, 3}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
+constexpr std::array<Cut, 2> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 6, 4, 3}}};
 constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.1, 2, 10, 2}, {0.05, 3, 6, 2}, {0, 12, 6, 2}}};
 
@@ -117,16 +118,16 @@ EffectFit With(const EffectFit& fit, const EffectTrace& trace) {
 std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<EffectFit> fits;
-  const auto add = [&](const EffectFit& body, const EffectValues& law) {
-    std::vector<EffectValues> values = body.start;
+  const EffectFit& first = bodies.front();
+  const auto add = [&](std::size_t body, const EffectValues& law) {
+    std::vector<EffectValues> values = first.start;
     values.push_back(law);
-    EffectFit fit = fitting.Begin(body.body, values);
+    EffectFit fit = fitting.Begin(body, values);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   };
-  const EffectFit& first = bodies.front();
   for (const Effect* effect : effects) {
     for (const Eigen::VectorXd& start : effect->Starts(fitting.Model(first).Apply(first.x))) {
-      if (effect->MakeTension(start)) add(first, {effect->name(), start});
+      if (effect->MakeTension(start)) add(first.body, {effect->name(), start});
     }
   }
   Halve(fitting, kLawCuts, stage.Part(0, 0.5), kWithLaw, &fits);
@@ -141,7 +142,7 @@ std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<E
   strong.resize(std::min(strong.size(), kMostStrong));
   fits.clear();
   for (const EffectValues& law : strong) {
-    for (const EffectFit& body : bodies) add(body, law);
+    for (std::size_t body = 0; body < fitting.bodies().size(); ++body) add(body, law);
   }
   Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
   return fits;
