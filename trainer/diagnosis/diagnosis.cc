@@ -153,7 +153,7 @@ class Loop {
       before_ = accepted_;
     }
     if (!found || chosen.track.held >= common_.track.held) return false;
-    if (chosen.track.held < with_springs.track.held) with_springs = chosen;
+    if (!IsSurelyBetter(with_springs, chosen)) with_springs = chosen;
     const auto tried = static_cast<int>(search.fits.size());
     // hundreds of springs may bend to what a few parameters explain
     const bool without_springs =
@@ -166,9 +166,8 @@ class Loop {
     common_ = chosen;
     bodies_ = {{}, {chosen}};
     if (!trained_on_ || !options_.train_anew) return true;
-    if (const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_)) {
-      Offer(*anew);
-    }
+    const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_);
+    if (anew && IsSurelyBetter(*anew, accepted_)) accepted_ = *anew;
     return true;
   }
 
@@ -182,6 +181,13 @@ class Loop {
   bool IsExplained(int round) const {
     return round == 0 ? common_.track.held < kExplained * noise_floor_
                       : accepted_.track.held < kExplainedByEffects * noise_floor_;
+  }
+
+  // Many parameters must be better than few by more than a standard error.
+  bool IsSurelyBetter(const EffectFit& many, const EffectFit& few) const {
+    const BootstrapResult gain =
+        BlockBootstrap(Difference(few.held, many.held), block_, kDraws, options_.seed);
+    return gain.mean > gain.error;
   }
 
   // Single springs, too, of all these at the same time.
@@ -245,7 +251,8 @@ Twin TwinWith(Twin twin, const EffectFit& fit, const std::vector<EffectValues>& 
   dense.system = fit.system;
   const double fps = recordings[0].fps;
   const int substeps = StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety);
-  dense.substeps_per_second = static_cast<int>(std::ceil(substeps * fps));
+  dense.substeps_per_second =
+      static_cast<int>(std::ceil(std::max(substeps * fps, kLeastDiagnosisRate)));
   twin.controller_velocity = fit.controller_velocity;
   for (const Recording& recording : recordings) {
     if (TrainedOnThis(twin, recording)) continue;

@@ -26,10 +26,8 @@ constexpr int kFollowedSteps = 3;
 
 constexpr double kSlow = 0.99;  // a step of Gauss-Newton that leaves more gains little ...
 constexpr int kMostSlow = 2;    // ... and so many in a row end it
-// Sub-steps a second at most, as in training: common factors leave room for single springs. And at
-// least: what a soft body predicts must not hang on the step, or an effect is taken for a remedy
-// because it makes the body stiffer and so the step finer.
-constexpr double kMostRate = 10000, kMostCommonRate = 5000, kLeastRate = 2000;
+// Sub-steps a second at most, as in training: common factors leave room for single springs.
+constexpr double kMostRate = 10000, kMostCommonRate = 5000;
 
 // Calls `work` for each fit and takes out those for which it returns false.
 template <class Work>
@@ -148,7 +146,7 @@ EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velo
   EffectProblem::Options options;
   options.threads = threads;
   options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
-  options.least_rate = kLeastRate;
+  options.least_rate = kLeastDiagnosisRate;
   options.most_rate = options.limit_dashpots ? kMostCommonRate : kMostRate;
   options.controller_velocity = controller_velocity;
   // an observer is for finding the way, which needs fewer digits

@@ -21,6 +21,10 @@ namespace physpring {
 // which nothing was seen are left out.
 using FrameTrack = std::vector<double>;
 
+// Sub-steps a second of a diagnosis, at least: what a soft body predicts must not hang on the step,
+// or an effect is taken for a remedy because it makes the body stiffer and so the step finer.
+constexpr double kLeastDiagnosisRate = 2000;
+
 class EffectProblem : public LeastSquares {
  public:
   struct Options {

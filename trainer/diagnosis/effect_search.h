@@ -7,8 +7,8 @@
 // becomes one of high damping, and no step with the effect leads back from there. So effects are
 // tried twice: from the start on, on bodies fitted under the highest gain only, from where a trace
 // says (laws of the springs, of which one linear step says little, also by two steps from each of
-// their starts); and those that a trace ranks first on the bodies fitted on. From the gain of that trace
-// on all go down together, the better part at a time (successive halving).
+// their starts); and those that a trace ranks first on the bodies fitted on. From the gain of that
+// trace on all go down together, the better part at a time (successive halving).
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 
