@@ -110,7 +110,8 @@ void PrintTable(const std::vector<Json>& cases) {
     double before = 0, after = 0, moved = 0, seconds = 0;
     std::map<std::string, int> instead;
     for (const Json& row : rows) {
-      first += !row["ranking"].empty() && row["ranking"][0]["name"] == effect ? 1 : 0;
+      const Json ranking = row.value("ranking", Json::array());  // none in older files
+      first += !ranking.empty() && ranking[0]["name"] == effect ? 1 : 0;
       if (row["found"] == effect) {
         ++found;
       } else {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <vector>
 
 #include "rollout/mujoco_log.h"
 #include "twin/effects/registry.h"
@@ -46,21 +47,21 @@ std::string ControllerBody(const SpringMassSystem& system, int column) {
                      position[1], position[2], column);
 }
 
-// Effects add attributes to a tendon or replace them.
-std::string TendonAttributes(const SpringMassSystem& system, int e) {
-  std::map<std::string, std::string> attributes = {
-      {"stiffness", fmt::format("{}", system.stiffness[e])},
-      {"damping", fmt::format("{}", system.dashpot[e])},
-      {"springlength", fmt::format("{}", system.rest_length[e])}};
+// Of each spring's tendon. Effects add attributes or replace them.
+std::vector<std::map<std::string, std::string>> TendonAttributes(const SpringMassSystem& system) {
+  std::vector<std::map<std::string, std::string>> attributes;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    attributes.push_back({{"stiffness", fmt::format("{}", system.stiffness[e])},
+                          {"damping", fmt::format("{}", system.dashpot[e])},
+                          {"springlength", fmt::format("{}", system.rest_length[e])}});
+  }
   for (const EffectValues& effect : system.effects) {
     const EffectMjcf mjcf = GetEffect(effect.name).Mjcf(effect.values, system);
-    for (const auto& [name, value] : mjcf.tendon.at(static_cast<std::size_t>(e))) {
-      attributes[name] = value;
+    for (std::size_t e = 0; e < attributes.size(); ++e) {
+      for (const auto& [name, value] : mjcf.tendon.at(e)) attributes[e][name] = value;
     }
   }
-  std::string text;
-  for (const auto& [name, value] : attributes) text += fmt::format(R"( {}="{}")", name, value);
-  return text;
+  return attributes;
 }
 
 }  // namespace
@@ -72,10 +73,14 @@ std::string TendonMjcf(const SpringMassSystem& system, const Eigen::Vector3d& gr
   for (int controller = 0; controller < system.controllers; ++controller) {
     bodies += ControllerBody(system, system.node_count() + controller);
   }
-  for (int e = 0; e < system.spring_count(); ++e) {
-    const auto& [a, b] = system.springs[static_cast<std::size_t>(e)];
-    tendons += fmt::format(R"(<spatial{}><site site="{}"/><site site="{}"/></spatial>)",
-                           TendonAttributes(system, e), a, b);
+  const auto attributes = TendonAttributes(system);
+  for (std::size_t e = 0; e < attributes.size(); ++e) {
+    tendons += "<spatial";
+    for (const auto& [name, value] : attributes[e]) {
+      tendons += fmt::format(R"( {}="{}")", name, value);
+    }
+    const auto& [a, b] = system.springs[e];
+    tendons += fmt::format(R"(><site site="{}"/><site site="{}"/></spatial>)", a, b);
   }
   return fmt::format(R"(
     <mujoco>

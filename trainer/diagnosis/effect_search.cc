@@ -58,19 +58,19 @@ bool IsFreeForm(const EffectFit& fit) {
   return !fit.start.empty() && fit.start.back().values.size() > kFreeForm;
 }
 
-// The best by misfit, and the best free-form one.
+// The best by misfit, and, beside others, the best free-form one.
 void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* fits) {
   std::stable_sort(fits->begin(), fits->end(),
                    [](const EffectFit& p, const EffectFit& q) { return p.misfit < q.misfit; });
-  std::map<std::string, std::size_t> kept;
-  std::erase_if(*fits, [&](const EffectFit& fit) {
-    return kept[NewEffect(fit)]++ >= (IsFreeForm(fit) ? 1 : of_an_effect);
-  });
   const auto best = std::find_if_not(fits->begin(), fits->end(), IsFreeForm);
-  const double most = best == fits->end() ? 0 : kHopeless * best->misfit;
+  const bool competing = best != fits->end();  // else all have the same effect, maybe a known one
+  const double least = competing ? best->misfit : fits->empty() ? 0 : fits->front().misfit;
+  std::map<std::string, std::size_t> kept;
   std::size_t others = 0;
   std::erase_if(*fits, [&](const EffectFit& fit) {
-    return !IsFreeForm(fit) && (others++ >= count || fit.misfit > most);
+    const bool apart = competing && IsFreeForm(fit);
+    if (kept[NewEffect(fit)]++ >= (apart ? 1 : of_an_effect)) return true;
+    return !apart && (others++ >= count || fit.misfit > kHopeless * least);
   });
 }
 
