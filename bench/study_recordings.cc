@@ -15,6 +15,10 @@ namespace physpring {
 namespace {
 
 constexpr int kFrames = 75, kSteps = 100;  // steps of MuJoCo a frame
+// An effect's size grows by this factor, at most so many times, until it moves the body so far, in
+// the mean: what moves it less is lost in the noise.
+constexpr double kGrowth = 1.5, kLeastMoved = 4e-3;  // m
+constexpr int kMostGrowths = 6;
 constexpr double kFps = 50, kTimestep = 1 / (kFps * kSteps);
 constexpr double kMass = 0.03;         // kg, of the body
 constexpr double kYoung = 1;           // N: stiffness times length of the shortest springs
@@ -233,6 +237,14 @@ Recording Record(const Lattice& lattice, const SceneEffects& given, const Hands&
   return recording;
 }
 
+double MeanDistance(const Recording& p, const Recording& q) {
+  double sum = 0;
+  for (std::size_t t = 1; t < p.points.size(); ++t) {
+    sum += (p.points[t] - q.points[t]).colwise().norm().mean();
+  }
+  return sum / static_cast<double>(p.points.size() - 1);
+}
+
 void AddNoise(double noise, Random* random, Recording* recording) {
   for (std::size_t t = 1; t < recording->points.size(); ++t) {
     for (double& value : recording->points[t].reshaped()) {
@@ -256,16 +268,21 @@ MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise
                               std::uint64_t seed) {
   Random random(seed);
   const Lattice lattice = MakeLattice(body);
-  const double size = random(0.8, 1.6);
-  const SceneEffects effects = MakeEffect(effect, size, lattice, &random);
-  MakeEffect("none", 1, lattice, &random);  // so that hands and noise stay what they were
+  double size = random(0.8, 1.6);
+  const Random place = random;
+  MakeEffect("none", 1, lattice, &random);  // draws the place
   const Hands first(&random), second(&random);
-  MadeRecordings made{Record(lattice, effects, first), Record(lattice, effects, second), 0};
   const Recording without = Record(lattice, {}, first);
-  for (int t = 1; t < kFrames; ++t) {
-    made.displacement += (made.fit.points[t] - without.points[t]).colwise().norm().mean();
+  SceneEffects effects;
+  MadeRecordings made;
+  for (int growth = 0; growth <= kMostGrowths; ++growth, size *= kGrowth) {
+    Random same = place;
+    effects = MakeEffect(effect, size, lattice, &same);
+    made.fit = Record(lattice, effects, first);
+    made.displacement = MeanDistance(made.fit, without);
+    if (effect == "none" || made.displacement >= kLeastMoved) break;
   }
-  made.displacement /= kFrames - 1;
+  made.other = Record(lattice, effects, second);
   made.fit.name = effect + " fit", made.other.name = effect + " other";
   made.fit.hash = "fit", made.other.hash = "other";
   AddNoise(noise, &random, &made.fit);

@@ -115,7 +115,8 @@ void Run(const DiagnoseArguments& arguments) {
   WriteFileAtomically(outputs.report, json);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, json);
   const std::string name = std::filesystem::path(arguments.twin).filename().string();
-  WriteFileAtomically(outputs.page, FormatDiagnosisPage(diagnosis, "Diagnosis of " + name));
+  WriteFileAtomically(outputs.page,
+                      FormatDiagnosisPage(diagnosis, data.recordings[0], "Diagnosis of " + name));
   WriteTwin(diagnosis.twin, outputs.twin);
   checkpoint.Finish();
   fmt::print("{}", FormatDiagnosisText(diagnosis));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/residual_plots.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
 
@@ -65,6 +66,26 @@ Json UnexplainedJson(const Diagnosis& diagnosis) {
           {"from_s", left.first_time},
           {"to_s", left.last_time},
           {"direction", Direction(left.direction)}};
+}
+
+Json BinnedJson(const BinnedMeans& means) {
+  return {{"x", means.x}, {"force_n", means.y}, {"standard_error_n", means.error}};
+}
+
+Json ResidualJson(const ResidualPattern& pattern) {
+  return {{"rms_n", pattern.root_mean_square},
+          {"noise_n", pattern.noise},
+          {"left_m", pattern.left},
+          {"constant", pattern.constant},
+          {"acceleration_m_per_s2", Direction(pattern.acceleration)},
+          {"with_velocity", pattern.with_velocity},
+          {"with_stretch", pattern.with_stretch},
+          {"over_time_n", pattern.over_time},
+          {"frequency_step_hz", pattern.frequency_step},
+          {"spectrum_n", pattern.spectrum},
+          {"along_body", BinnedJson(pattern.along_body)},
+          {"against_speed", BinnedJson(pattern.against_speed)},
+          {"against_stretch", BinnedJson(pattern.against_stretch)}};
 }
 
 std::string InMillimetres(double metres) {
@@ -148,6 +169,21 @@ std::string Verdict(const Diagnosis& diagnosis) {
       left.last_time, left.direction[0], left.direction[1], left.direction[2]);
 }
 
+// "missing force: ...": how large it is, and what it goes along with.
+std::string DescribeResidual(const Diagnosis& diagnosis) {
+  const ResidualPattern &before = diagnosis.residual_before, &after = diagnosis.residual_after;
+  std::string text =
+      fmt::format("missing force on a node: {:.3g} mN", 1e3 * before.root_mean_square);
+  if (!diagnosis.effects.empty()) {
+    text += fmt::format(" before, {:.3g} mN after", 1e3 * after.root_mean_square);
+  }
+  return text + fmt::format(
+                    " (noise makes {:.2g}){}: {:.0f} % of its square one acceleration, cosine with "
+                    "the velocity {:.2f}, with the stretch {:.2f}",
+                    1e3 * before.noise, diagnosis.effects.empty() ? "" : "; before",
+                    100 * before.constant, before.with_velocity, before.with_stretch);
+}
+
 // A curve of the errors in time as SVG.
 std::string Curve(const FrameTrack& track, double top, const char* colour) {
   if (track.size() < 2) return "";
@@ -194,7 +230,10 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
        {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
       {"candidates", candidates},
       {"confounded", Confounded(diagnosis)},
-      {"unexplained", UnexplainedJson(diagnosis)}};
+      {"unexplained", UnexplainedJson(diagnosis)},
+      {"residual_force",
+       {{"before", ResidualJson(diagnosis.residual_before)},
+        {"after", ResidualJson(diagnosis.residual_after)}}}};
   return report.dump(1) + "\n";
 }
 
@@ -216,14 +255,17 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   if (!confounded.empty()) text += confounded + "\n";
   text += fmt::format("after: fit {}, held out {}\n", InMillimetres(diagnosis.after.fit),
                       InMillimetres(diagnosis.after.held));
-  return text + Verdict(diagnosis) + "\n";
+  return text + DescribeResidual(diagnosis) + "\n" + Verdict(diagnosis) + "\n";
 }
 
-std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& title) {
+std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& recording,
+                                const std::string& title) {
   std::string page = fmt::format(
       "<!DOCTYPE html><html lang='en'><meta charset='utf-8'><title>{0}</title><style>body{{font:"
       "16px sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}td,th{{padding:.2em 1em .2em "
-      "0;text-align:left}}svg{{width:100%;border:1px solid #ccc}}</style><h1>{0}</h1><p>{1}.</p>",
+      "0;text-align:left}}svg{{width:100%;border:1px solid "
+      "#ccc}}.plots{{display:grid;grid-template-columns:1fr 1fr;gap:"
+      "1em}}.plots text{{font-size:12px}}</style><h1>{0}</h1><p>{1}.</p>",
       title, Verdict(diagnosis));
   page += fmt::format(
       "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
@@ -245,6 +287,8 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& t
     page += fmt::format("<p>Behind ±: half a 95 % interval from the curvature of the misfit{}.</p>",
                         confounded.empty() ? "" : "; " + confounded);
   }
+  page += fmt::format("<h2>Forces that are missing</h2><p>{}.</p>{}", DescribeResidual(diagnosis),
+                      FormatResidualPlots(diagnosis, recording));
   page +=
       "<h2>Candidates</h2><table><tr><th>effect</th><th>part of the misfit, linearised</th>"
       "<th>held out, refitted</th><th>gain</th></tr>";

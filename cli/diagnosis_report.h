@@ -12,7 +12,9 @@ namespace physpring {
 
 std::string FormatDiagnosisJson(const Diagnosis& diagnosis);
 std::string FormatDiagnosisText(const Diagnosis& diagnosis);
-std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const std::string& title);
+// `recording`: the first one.
+std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& recording,
+                                const std::string& title);
 
 }  // namespace physpring
 

@@ -21,6 +21,7 @@ class RolloutIn : public Rollout {
       : recording_(*episode.recording),
         observer_gain_(options.observer_gain),
         growth_limit_(options.growth_limit),
+        kicks_(options.kicks),
         delay_(ControllerDelay(system)),
         gradient_(system),
         simulator_(system, EnvironmentOf(recording_),
@@ -30,6 +31,7 @@ class RolloutIn : public Rollout {
         simulator_.MakeState(recording_.start.leftCols(system.node_count()), recording_.velocity));
     positions_.push_back(simulator_.Positions(states_[0]));
     for (int frame = 1; frame < episode.frames; ++frame) {
+      if (kicks_) Kick((*kicks_)[static_cast<std::size_t>(frame) - 1], &states_.back());
       NodeStates<Real> state = states_.back();
       simulator_.AdvanceFrame(Input(frame), &state, &workspace_);
       Points position = simulator_.Positions(state);
@@ -44,7 +46,8 @@ class RolloutIn : public Rollout {
   }
 
   RolloutAdjoint Adjoint(const std::vector<Points>& position_bar) override {
-    RolloutAdjoint result{gradient_, {}, 0};
+    RolloutAdjoint result{gradient_, {}, {}, 0};
+    if (kicks_) result.kicks_bar.resize(states_.size() - 1);
     NodeStates<Real> state_bar(states_[0].size());
     double injected_squared = 0;
     for (std::size_t frame = states_.size() - 1; frame >= 1; --frame) {
@@ -58,6 +61,7 @@ class RolloutIn : public Rollout {
       }
       simulator_.AdvanceFrameAdjoint(states_[frame - 1], Input(static_cast<int>(frame)), &state_bar,
                                      &result.gradient, &workspace_);
+      if (kicks_) result.kicks_bar[frame - 1] = simulator_.Velocities(state_bar);
     }
     result.velocity_bar = simulator_.Velocities(state_bar);
     return result;
@@ -65,6 +69,12 @@ class RolloutIn : public Rollout {
 
  private:
   FrameInput Input(int frame) const { return RecordedInput(recording_, frame, delay_); }
+
+  static void Kick(const Points& kick, NodeStates<Real>* state) {
+    for (int i = 0; i < kick.cols(); ++i) {
+      for (int j = 0; j < 3; ++j) (*state)[i].v[j] += static_cast<Real>(kick(j, i));
+    }
+  }
 
   // Adds to the positions' part of state_bar; returns the norm of the sum.
   static double Add(const Points& position_bar, NodeStates<Real>* state_bar) {
@@ -82,6 +92,7 @@ class RolloutIn : public Rollout {
   const Recording& recording_;
   double observer_gain_;
   double growth_limit_;
+  const std::vector<Points>* kicks_;
   double delay_;             // of the controllers, s
   SystemGradient gradient_;  // zero, of the right shapes
   Simulator<Real> simulator_;

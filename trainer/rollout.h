@@ -29,11 +29,15 @@ struct RolloutOptions {
   int substeps = 0;  // a frame, >= 1
   double growth_limit = 1e3;
   double observer_gain = 0;  // observer.h; 0: none
+  // Added to the velocities at frames 0, 1, ... (after an observer's correction), 3 x nodes, m/s:
+  // as many as there are steps from frame to frame. They must outlive the rollout.
+  const std::vector<Points>* kicks = nullptr;
 };
 
 struct RolloutAdjoint {
   SystemGradient gradient;
-  Points velocity_bar;  // d loss / d initial velocity, 3 x nodes
+  Points velocity_bar;            // d loss / d initial velocity, 3 x nodes
+  std::vector<Points> kicks_bar;  // d loss / d velocities at frames 0, 1, ...: of kicks there
   int cuts = 0;
 };
 

@@ -114,6 +114,8 @@ TEST_F(DiagnoseAnew, WritesTheSameBytesHoweverOftenItIsStopped) {
   // the test is of all kinds of work: a search, and a refit of springs
   const auto report = nlohmann::json::parse(ReadFile(whole_ + "/report.json"));
   EXPECT_FALSE(report["candidates"].empty());
+  EXPECT_GT(report["residual_force"]["before"]["rms_n"].get<double>(), 0);
+  EXPECT_NE(ReadFile(whole_ + "/report.html").find("Mean force on each node"), std::string::npos);
 }
 
 TEST_F(DiagnoseAnew, GoesOnWithoutTheWorkThatIsDone) {

@@ -97,6 +97,27 @@ TEST(Rollout, AdjointUnderAnObserverAgreesWithDifferences) {
   ExpectPasses(c, {{"drag", &c.system.drag, 1e-2, adjoint.gradient.drag}});
 }
 
+TEST(Rollout, AdjointOfKicksAgreesWithDifferences) {
+  Case c;
+  MoveAway(&c.recording);
+  c.options.observer_gain = 0.3;
+  Random random(9);
+  std::vector<Points> kicks;
+  for (int frame = 0; frame + 1 < kFrames; ++frame) kicks.push_back(random.Box(6, 0.1));
+  c.options.kicks = &kicks;
+  const RolloutAdjoint adjoint = c.Run()->Adjoint(c.weights);
+  ASSERT_EQ(adjoint.kicks_bar.size(), kicks.size());
+  std::vector<CheckedVariable> variables;
+  for (std::size_t frame = 0; frame < kicks.size(); ++frame) {
+    for (int i = 0; i < 18; ++i) {
+      variables.push_back({"kick " + std::to_string(frame) + " " + std::to_string(i),
+                           &kicks[frame].reshaped()[i], 1e-3,
+                           adjoint.kicks_bar[frame].reshaped()[i]});
+    }
+  }
+  ExpectPasses(c, variables);
+}
+
 TEST(Rollout, AnObserverKeepsNearWhatIsMeasured) {
   Case c;
   SpringMassSystem other = c.system;

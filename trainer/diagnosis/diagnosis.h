@@ -12,6 +12,7 @@
 //               by more than chance (paired block bootstrap) and by more than a small part
 //   6  train    a twin that was trained on these recordings anew, with the effect
 //   7  repeat from 3, until nothing is accepted
+//   8  tell    the forces that are still missing, before and after (residual_force.h)
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 
@@ -24,6 +25,7 @@
 #include "trainer/diagnosis/effect_certainty.h"
 #include "trainer/diagnosis/effect_fit.h"
 #include "trainer/diagnosis/journal.h"
+#include "trainer/diagnosis/residual_pattern.h"
 #include "trainer/diagnosis/unexplained.h"
 #include "twin/recording.h"
 #include "twin/twin.h"
@@ -62,7 +64,9 @@ struct Diagnosis {
   std::vector<EffectCandidate> candidates;  // of the first round, best first
   std::optional<Unexplained> unexplained;
   FrameTrack before_track, after_track;  // on held-out frames
-  Twin twin;                             // refitted, with the effects
+  // Forces that the model lacks on the first recording, without and with the effects.
+  ResidualPattern residual_before, residual_after;
+  Twin twin;  // refitted, with the effects
 };
 
 // `held_out` may be empty: then the future frames of the recordings are held out, or blocks of

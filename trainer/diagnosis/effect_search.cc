@@ -204,7 +204,7 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodie
   });
   order.resize(std::min(order.size(), kTracedEffects));
   const double least = order.empty() ? 0 : kLeastScore * result.traces[order.front()].score;
-  std::erase_if(order, [&](std::size_t n) { return result.traces[n].score < least; });
+  std::erase_if(order, [&](std::size_t n) { return result.traces[n].score <= least; });
   for (std::size_t n : order) {
     for (const EffectFit& body : bodies.fitted) result.fits.push_back(With(body, result.traces[n]));
   }

@@ -4,16 +4,31 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace physpring {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPatch = 0.5;  // of the distance between neighbours
+
+// Half the mean length of the shortest springs of the nodes.
 double PatchRadius(const SpringMassSystem& system) {
-  double sum = 0;
+  const int nodes = system.node_count();
+  Eigen::VectorXd shortest = Eigen::VectorXd::Constant(nodes, kInfinity);
   for (const auto& [a, b] : system.springs) {
-    sum += (system.position.col(a) - system.position.col(b)).norm();
+    const double length = (system.position.col(a) - system.position.col(b)).norm();
+    for (int node : {a, b}) {
+      if (node < nodes) shortest[node] = std::min(shortest[node], length);
+    }
   }
-  return sum / std::max(1, system.spring_count());
+  double sum = 0;
+  int count = 0;
+  for (double length : shortest) {
+    if (length == kInfinity) continue;
+    sum += length, ++count;
+  }
+  return kPatch * sum / std::max(1, count);
 }
 
 }  // namespace

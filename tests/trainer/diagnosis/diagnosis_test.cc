@@ -110,6 +110,11 @@ TEST(Diagnosis, FindsTiltedGravity) {
   EXPECT_LT(diagnosis.after.held, 1.5 * diagnosis.noise_floor);
   EXPECT_GT(diagnosis.before.held, 3 * diagnosis.after.held);
   EXPECT_FALSE(diagnosis.unexplained);
+  // the missing force says so, too
+  const Eigen::Vector3d& missing = diagnosis.residual_before.acceleration;
+  EXPECT_GT(missing[1], 3 * std::abs(missing[0]));
+  EXPECT_LT(diagnosis.residual_after.root_mean_square,
+            0.5 * diagnosis.residual_before.root_mean_square);
 }
 
 TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
@@ -118,6 +123,7 @@ TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
   // the twin came with the true parameters, which no refit to noisy data reaches
   EXPECT_LT(diagnosis.before.held, 1.05 * diagnosis.noise_floor);
   EXPECT_EQ(diagnosis.after.held, diagnosis.before.held);
+  EXPECT_LE(diagnosis.residual_before.root_mean_square, 2 * diagnosis.residual_before.noise);
   EXPECT_FALSE(diagnosis.unexplained);
 }
 

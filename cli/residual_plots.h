@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The forces that a diagnosed model lacks, before (red) and after (blue), as pictures (SVG).
+#ifndef PHYSPRING_CLI_RESIDUAL_PLOTS_H_
+#define PHYSPRING_CLI_RESIDUAL_PLOTS_H_
+
+#include <string>
+
+#include "trainer/diagnosis/diagnosis.h"
+
+namespace physpring {
+
+// The mean force on each node as an arrow, and plots of the force along the body, over time, by
+// frequency, against the speed and against the stretch. `recording`: the one they were found on.
+std::string FormatResidualPlots(const Diagnosis& diagnosis, const Recording& recording);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_RESIDUAL_PLOTS_H_

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/diagnosis/fit_residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trainer/fit_model.h"
+#include "trainer/parallel.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+// As one vector, and back.
+Eigen::VectorXd Pack(const ResidualForce& residual) {
+  const Eigen::Index nodes = residual.noise.size(), each = 3 * nodes;
+  const auto steps = static_cast<Eigen::Index>(residual.force.size());
+  Eigen::VectorXd packed(1 + nodes + each * (2 * steps + 1));
+  packed.head(1 + nodes) << residual.left, residual.noise;
+  Eigen::Index at = 1 + nodes;
+  for (const auto* series : {&residual.force, &residual.position}) {
+    for (const Points& points : *series) {
+      packed.segment(at, each) = points.reshaped();
+      at += each;
+    }
+  }
+  return packed;
+}
+
+ResidualForce Unpack(const Eigen::VectorXd& packed, int nodes) {
+  ResidualForce residual;
+  const Eigen::Index each = 3 * nodes, steps = ((packed.size() - 1 - nodes) / each - 1) / 2;
+  residual.left = packed[0];
+  residual.noise = packed.segment(1, nodes);
+  Eigen::Index at = 1 + nodes;
+  for (Eigen::Index n = 0; n < 2 * steps + 1; ++n, at += each) {
+    (n < steps ? residual.force : residual.position)
+        .emplace_back(packed.segment(at, each).reshaped(3, nodes));
+  }
+  return residual;
+}
+
+}  // namespace
+
+int DiagnosisRate(const SpringMassSystem& system, double fps) {
+  const int substeps = StableSubsteps(ComputeStabilityBound(system), 1 / fps, kStepSafety);
+  return static_cast<int>(std::ceil(std::max(substeps * fps, kLeastDiagnosisRate)));
+}
+
+std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
+                                         const std::vector<const EffectFit*>& fits,
+                                         double deviation, const WorkShare& share) {
+  const Recording& recording = *fitting.recordings()[0].recording;
+  const auto count = static_cast<int>(fits.size());
+  std::vector<ResidualPattern> patterns(fits.size());
+  fitting.journal().Stage(share, count, "finding the residual forces");
+  ParallelFor(count, fitting.threads(), [&](int i) {
+    const EffectFit& fit = *fits[static_cast<std::size_t>(i)];
+    ResidualForceOptions options;
+    options.controller_velocity = fit.controller_velocity;
+    options.substeps =
+        static_cast<int>(std::ceil(DiagnosisRate(fit.system, recording.fps) / recording.fps));
+    options.deviation = deviation;
+    options.difference = DirectionDifference(recording, false);
+    PieceKey key = KeyOf("residual force", fit);
+    key.Add(fit.system.effects).Add(fit.system.stiffness).Add(fit.system.dashpot);
+    const Eigen::VectorXd packed = fitting.journal().Get(
+        key, [&] { return Pack(FindResidualForce(fit.system, recording, options)); });
+    patterns[static_cast<std::size_t>(i)] =
+        PatternOf(Unpack(packed, fit.system.node_count()), fit.system, recording.fps);
+  });
+  return patterns;
+}
+
+}  // namespace physpring

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The residual forces of fits, on the first recording.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_FIT_RESIDUAL_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_FIT_RESIDUAL_H_
+
+#include <vector>
+
+#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/residual_pattern.h"
+
+namespace physpring {
+
+// Sub-steps a second that a diagnosed system takes on recordings of that rate.
+int DiagnosisRate(const SpringMassSystem& system, double fps);
+
+// `deviation`: of the measurements, m, a coordinate.
+std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
+                                         const std::vector<const EffectFit*>& fits,
+                                         double deviation, const WorkShare& share);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_FIT_RESIDUAL_H_
