@@ -13,8 +13,8 @@
 namespace physpring {
 namespace {
 
-// Of an inner particle, about: on a sheet the first two shells of a regular grid and more, in a solid
-// the first two, three, five and six.
+// Of an inner particle, about: on a sheet the first two shells of a regular grid and more, in a
+// solid the first two, three, five and six.
 constexpr int kNeighbours[] = {12, 18, 28, 40};
 
 // Of the squared lengths of the springs at a node of a solid, the part across a plane, at least. A
