@@ -13,9 +13,9 @@
 namespace physpring {
 namespace {
 
-// Of an inner particle, about: on a sheet the first two shells of a regular grid and more, in a
-// solid the first two, three, five and six.
-constexpr int kNeighbours[] = {12, 18, 28, 40};
+// Of an inner particle, about: on a sheet the first two, three, four shells of a regular grid, in
+// a solid the first two, the first three and part of the fourth.
+constexpr int kNeighbours[] = {12, 18, 28};
 
 // Of the squared lengths of the springs at a node of a solid, the part across a plane, at least. A
 // third where they spread evenly.

@@ -159,6 +159,9 @@ Eigen::VectorXd NormalNoise(Eigen::Index count, double deviation) {
 ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording& recording,
                                 const ResidualForceOptions& options) {
   KickProblem problem(system, recording, options);
+  const int nodes = system.node_count();
+  if (problem.rows() == 0)
+    return {{}, {recording.start.leftCols(nodes)}, Eigen::VectorXd::Zero(nodes), 0};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.size());
   auto r = problem.Linearise(x);
   if (!r) {
@@ -185,7 +188,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
 
   ResidualForce result;
   const double fps = recording.fps;
-  const Eigen::VectorXd mass = system.mass.head(system.node_count());
+  const Eigen::VectorXd mass = system.mass.head(nodes);
   result.position = problem.rollout().positions();
   result.left =
       std::sqrt(r->squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r->size())));
@@ -196,7 +199,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
   int again = 0;
   const Eigen::VectorXd of_noise =
       Cgls(problem, NormalNoise(problem.rows(), options.deviation), 0, steps, &again);
-  Eigen::VectorXd squared = Eigen::VectorXd::Zero(system.node_count());
+  Eigen::VectorXd squared = Eigen::VectorXd::Zero(nodes);
   for (const Points& kick : problem.Unpack(of_noise)) {
     squared += kick.colwise().squaredNorm().transpose();
   }

@@ -111,6 +111,13 @@ TEST(ResidualForce, LeavesUnseenFramesAlone) {
   EXPECT_EQ(c.Find().force.size(), static_cast<std::size_t>(kFrames - 11));
 }
 
+TEST(ResidualForce, IsNoneWhereNothingWasSeen) {
+  Case c;
+  for (Points& points : c.recording.points) points.setConstant(std::nan(""));
+  EXPECT_TRUE(c.Find().force.empty());
+  EXPECT_EQ(c.Pattern().root_mean_square, 0);
+}
+
 TEST(ResidualPattern, KnowsPlaceTimeAndFrequency) {
   SpringMassSystem system = RandomSystem(12, 1, 5);
   ResidualForce residual;
