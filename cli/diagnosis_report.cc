@@ -92,7 +92,7 @@ std::string InMillimetres(double metres) {
   return std::isfinite(metres) ? fmt::format("{:.2f} mm", 1e3 * metres) : "no data";
 }
 
-std::string Interval(const BootstrapResult& gain) {
+std::string DescribeGain(const BootstrapResult& gain) {
   return fmt::format("{:.2f} mm less, 95 % interval {:.2f} to {:.2f}", 1e3 * gain.mean,
                      1e3 * gain.low, 1e3 * gain.high);
 }
@@ -185,7 +185,7 @@ std::string DescribeResidual(const Diagnosis& diagnosis) {
 }
 
 // A curve of the errors in time as SVG.
-std::string Curve(const FrameTrack& track, double top, const char* colour) {
+std::string TrackCurve(const FrameTrack& track, double top, const char* colour) {
   if (track.size() < 2) return "";
   std::string points;
   for (std::size_t i = 0; i < track.size(); ++i) {
@@ -197,7 +197,7 @@ std::string Curve(const FrameTrack& track, double top, const char* colour) {
                      points);
 }
 
-std::string Plot(const Diagnosis& diagnosis) {
+std::string TrackPlot(const Diagnosis& diagnosis) {
   double top = diagnosis.noise_floor;
   for (double error : diagnosis.before_track) top = std::max(top, error);
   for (double error : diagnosis.after_track) top = std::max(top, error);
@@ -207,8 +207,8 @@ std::string Plot(const Diagnosis& diagnosis) {
       "<svg viewBox='0 0 800 210' role='img'><line x1='0' x2='800' y1='{0:.1f}' y2='{0:.1f}' "
       "stroke='#888' stroke-dasharray='4'/>{1}{2}</svg><p>Track error of held-out frames, one "
       "after the other; the top is {3}. Red: before, blue: after, dashed: noise floor.</p>",
-      floor, Curve(diagnosis.before_track, top, "#c33"), Curve(diagnosis.after_track, top, "#25c"),
-      InMillimetres(top));
+      floor, TrackCurve(diagnosis.before_track, top, "#c33"),
+      TrackCurve(diagnosis.after_track, top, "#25c"), InMillimetres(top));
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
     if (!candidate.refit) continue;
     text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
                         candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
-                        Interval(candidate.gain), candidate.gain.p);
+                        DescribeGain(candidate.gain), candidate.gain.p);
   }
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
     text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
@@ -273,8 +273,8 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
       "<tr><td>noise floor</td><td colspan='2'>{}</td></tr></table><p>{}.</p>",
       InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held),
       InMillimetres(diagnosis.after.fit), InMillimetres(diagnosis.after.held),
-      InMillimetres(diagnosis.noise_floor), Interval(diagnosis.gain));
-  page += Plot(diagnosis);
+      InMillimetres(diagnosis.noise_floor), DescribeGain(diagnosis.gain));
+  page += TrackPlot(diagnosis);
   page += "<h2>Effects added</h2><ul>";
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
     const EffectValues& effect = diagnosis.effects[i];
@@ -296,7 +296,7 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
     page += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>{}</td><td>{}</td></tr>",
                         candidate.name, 100 * candidate.score,
                         candidate.refit ? InMillimetres(candidate.refit->held) : "",
-                        candidate.refit ? Interval(candidate.gain) : "");
+                        candidate.refit ? DescribeGain(candidate.gain) : "");
   }
   return page + "</table></html>\n";
 }

@@ -13,47 +13,50 @@ namespace physpring {
 namespace {
 
 constexpr char kBefore[] = "#c33", kAfter[] = "#25c";
-constexpr double kWidth = 400, kHeight = 240, kLeft = 60, kRight = 390, kTop = 26, kBottom = 205;
+constexpr double kPlotWidth = 400, kPlotHeight = 240, kPlotLeft = 60, kPlotRight = 390,
+                 kPlotTop = 26, kPlotBottom = 205;
 
-struct Curve {
+struct ForceCurve {
   std::vector<double> x, y;
   const char* colour;
 };
 
 // A plot with its title above, what runs along x below it, and forces in mN along y; a dashed line
 // at `noise` [N], if it is not 0.
-std::string Plot(const std::string& title, const std::string& along, std::vector<Curve> curves,
-                 double noise) {
+std::string ForcePlot(const std::string& title, const std::string& along,
+                      std::vector<ForceCurve> curves, double noise) {
   double left = 0, right = 0, low = 0, high = 1e3 * noise;
-  for (Curve& curve : curves) {
+  for (ForceCurve& curve : curves) {
     for (double& y : curve.y) y *= 1e3;
     for (double x : curve.x) left = std::min(left, x), right = std::max(right, x);
     for (double y : curve.y) low = std::min(low, y), high = std::max(high, y);
   }
   if (right <= left || high <= low) return "";
   const auto at_x = [&](double x) {
-    return kLeft + (kRight - kLeft) * (x - left) / (right - left);
+    return kPlotLeft + (kPlotRight - kPlotLeft) * (x - left) / (right - left);
   };
-  const auto at_y = [&](double y) { return kBottom - (kBottom - kTop) * (y - low) / (high - low); };
+  const auto at_y = [&](double y) {
+    return kPlotBottom - (kPlotBottom - kPlotTop) * (y - low) / (high - low);
+  };
   std::string svg = fmt::format(
       "<svg viewBox='0 0 {0} {1}' role='img' aria-label='{2}'><text x='{3}' y='16'>{2}</text>"
       "<text x='{4}' y='{5}' text-anchor='end'>{6}</text>",
-      kWidth, kHeight, title, kLeft, kRight, kHeight - 4, along);
+      kPlotWidth, kPlotHeight, title, kPlotLeft, kPlotRight, kPlotHeight - 4, along);
   const auto line = [&](double y, const char* style) {
-    svg += fmt::format("<line x1='{}' x2='{}' y1='{:.1f}' y2='{:.1f}' stroke='#888' {}/>", kLeft,
-                       kRight, at_y(y), at_y(y), style);
+    svg += fmt::format("<line x1='{}' x2='{}' y1='{:.1f}' y2='{:.1f}' stroke='#888' {}/>",
+                       kPlotLeft, kPlotRight, at_y(y), at_y(y), style);
   };
   line(0, "");
   if (noise > 0) line(1e3 * noise, "stroke-dasharray='4'");
   for (double y : {low, high}) {
-    svg += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end'>{:.3g}{}</text>", kLeft - 5,
+    svg += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end'>{:.3g}{}</text>", kPlotLeft - 5,
                        at_y(y) + 4, y, y == high ? " mN" : "");
   }
   for (double x : {left, right}) {
     svg += fmt::format("<text x='{:.1f}' y='{}' text-anchor='{}'>{:.3g}</text>", at_x(x),
-                       kBottom + 16, x == left ? "start" : "end", x);
+                       kPlotBottom + 16, x == left ? "start" : "end", x);
   }
-  for (const Curve& curve : curves) {
+  for (const ForceCurve& curve : curves) {
     std::string points;
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       points += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[i]), at_y(curve.y[i]));
@@ -65,8 +68,8 @@ std::string Plot(const std::string& title, const std::string& along, std::vector
 }
 
 // A series as a curve; entry i is at (i + offset) * step.
-Curve Series(const std::vector<double>& y, double step, double offset, const char* colour) {
-  Curve curve{{}, y, colour};
+ForceCurve Series(const std::vector<double>& y, double step, double offset, const char* colour) {
+  ForceCurve curve{{}, y, colour};
   for (std::size_t i = 0; i < y.size(); ++i) {
     curve.x.push_back((static_cast<double>(i) + offset) * step);
   }
@@ -74,7 +77,7 @@ Curve Series(const std::vector<double>& y, double step, double offset, const cha
 }
 
 // Nodes in the reference configuration, and the mean force on each.
-std::string Arrows(const Diagnosis& diagnosis, const View& view) {
+std::string ForceArrows(const Diagnosis& diagnosis, const View& view) {
   const ResidualPattern &before = diagnosis.residual_before, &after = diagnosis.residual_after;
   const Eigen::Matrix2Xd nodes = view.Project(view.ToUpright(before.node));
   if (nodes.cols() < 2) return "";
@@ -113,32 +116,33 @@ std::string FormatResidualPlots(const Diagnosis& diagnosis, const Recording& rec
   const ResidualPattern &before = diagnosis.residual_before, &after = diagnosis.residual_after;
   const bool both = !diagnosis.effects.empty();
   const auto curves = [&](auto curve_of) {
-    std::vector<Curve> of_both{curve_of(before, kBefore)};
+    std::vector<ForceCurve> of_both{curve_of(before, kBefore)};
     if (both) of_both.push_back(curve_of(after, kAfter));
     return of_both;
   };
   const auto binned = [&](BinnedMeans ResidualPattern::*means) {
     return curves([&](const ResidualPattern& pattern, const char* colour) {
-      return Curve{(pattern.*means).x, (pattern.*means).y, colour};
+      return ForceCurve{(pattern.*means).x, (pattern.*means).y, colour};
     });
   };
   const double noise = before.noise;
-  std::string page = Arrows(diagnosis, View(recording)) + "<div class='plots'>";
-  page += Plot("along the body", "from one end to the other", binned(&ResidualPattern::along_body),
-               noise);
-  page += Plot("over time", "s", curves([&](const ResidualPattern& pattern, const char* colour) {
-                 return Series(pattern.over_time, 1 / recording.fps, 0.5, colour);
-               }),
-               noise);
-  page += Plot("of all nodes together, by frequency", "Hz",
-               curves([&](const ResidualPattern& pattern, const char* colour) {
-                 return Series(pattern.spectrum, pattern.frequency_step, 1, colour);
-               }),
-               0);
-  page += Plot("along the velocity, against the speed", "m/s",
-               binned(&ResidualPattern::against_speed), 0);
-  page += Plot("towards stretched springs, against the stretch", "sum of strains",
-               binned(&ResidualPattern::against_stretch), 0);
+  std::string page = ForceArrows(diagnosis, View(recording)) + "<div class='plots'>";
+  page += ForcePlot("along the body", "from one end to the other",
+                    binned(&ResidualPattern::along_body), noise);
+  page +=
+      ForcePlot("over time", "s", curves([&](const ResidualPattern& pattern, const char* colour) {
+                  return Series(pattern.over_time, 1 / recording.fps, 0.5, colour);
+                }),
+                noise);
+  page += ForcePlot("of all nodes together, by frequency", "Hz",
+                    curves([&](const ResidualPattern& pattern, const char* colour) {
+                      return Series(pattern.spectrum, pattern.frequency_step, 1, colour);
+                    }),
+                    0);
+  page += ForcePlot("along the velocity, against the speed", "m/s",
+                    binned(&ResidualPattern::against_speed), 0);
+  page += ForcePlot("towards stretched springs, against the stretch", "sum of strains",
+                    binned(&ResidualPattern::against_stretch), 0);
   return page + "</div>";
 }
 

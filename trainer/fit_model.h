@@ -30,6 +30,9 @@ struct Candidate {
 // What the options leave open, in all combinations, few neighbours first. Never empty.
 std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions& options);
 
+// Start systems that a fit tries, in sub-steps a frame.
+constexpr double kSoftestStart = 2, kStiffestStart = 64;
+
 // Over-damped, and as soft as `start_substeps` sub-steps a frame allow. Throws Error where the
 // recording gives no body.
 SpringMassSystem StartSystem(const Recording& recording, const Candidate& candidate,
@@ -41,6 +44,7 @@ Parameters CommonFactors(const SpringMassSystem& base, const Recording& recordin
 // The same factors and every spring's own stiffness, dashpot and rest length, and their prior.
 Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording);
 GaussNewtonOptions SpringPrior(const Parameters& parameters);
+constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
 
 // Steps of differences in the log-factors: of one common factor, and the longest entry of a step
 // along all parameters. Contacts make residuals jump, and floats are coarse: both want longer ones.

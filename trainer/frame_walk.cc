@@ -7,9 +7,6 @@
 namespace physpring {
 namespace {
 
-// A body that moved this far has diverged, m.
-constexpr double kFarAway = 1e3;
-
 template <class Real>
 class FrameWalkIn : public FrameWalk {
  public:

@@ -15,21 +15,15 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostCommonRecordings = 4;   // that common factors are fitted to
-constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
-constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
-constexpr int kStepsPerGain = 6;       // of common factors
-constexpr int kFirstSpringGain = 3;    // of kObserverGains
-constexpr int kFollowedSteps = 3;      // of Gauss-Newton with each gain before the last ...
-constexpr int kGaussNewtonSteps = 15;  // ... and with that one
-constexpr double kSlow = 0.99;  // a step that lowers the mean square by less gains little ...
-constexpr int kMostSlow = 2;    // ... and so many in a row end Gauss-Newton
+constexpr int kMostCommonRecordings = 4;  // that common factors are fitted to
+constexpr int kStepsPerGain = 6;          // of common factors
+constexpr int kFirstSpringGain = 3;       // of kObserverGains
+constexpr int kFollowedSteps = 3;         // of Gauss-Newton with each gain before the last ...
+constexpr int kGaussNewtonSteps = 15;     // ... and with that one
 constexpr int kAdamSteps = 200;
 constexpr int kPatience = 40;           // Adam ends after so many steps in a row that gain little
 constexpr double kLearningRate = 0.03;  // of log-stiffnesses; others in proportion to their prior
 constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so much above the best
-
-double Millimetres(double mean_square) { return 1e3 * std::sqrt(3 * mean_square); }
 
 }  // namespace
 
@@ -71,7 +65,7 @@ void FullFit::StepCommon() {
   state_.damping = factors.damping;
   state_.mean_square = factors.mean_square;
   status_ = fmt::format("{}, all fit frames: {:.3f} mm", model_.candidate.Label(),
-                        Millimetres(factors.mean_square));
+                        PointMillimetres(factors.mean_square));
   if (++state_.iteration < kStepsPerGain && !factors.converged) return;
   state_.iteration = 0;
   state_.damping = 1e-2;
@@ -112,19 +106,20 @@ void FullFit::StepGaussNewton() {
   state_.x = after.x;
   state_.damping = after.damping;
   state_.mean_square = after.mean_square;
-  status_ = fmt::format("single springs: {:.3f} mm", Millimetres(after.mean_square));
+  status_ = fmt::format("single springs: {:.3f} mm", PointMillimetres(after.mean_square));
   const bool first_step = state_.iteration++ == 0;
-  const bool gained = first_step || after.mean_square < kSlow * before.mean_square;
+  const bool gained = first_step || after.mean_square < kSlowStep * before.mean_square;
   state_.slow = gained ? 0 : state_.slow + 1;
   if (state_.gain < kLastGain) {
-    if (!after.converged && state_.slow < kMostSlow && state_.iteration < kFollowedSteps) return;
+    if (!after.converged && state_.slow < kMostSlowSteps && state_.iteration < kFollowedSteps)
+      return;
     ++state_.gain;
     state_.iteration = state_.slow = 0;
     state_.damping = 1e-3;
     return;
   }
   // with little to gain early on, the residuals are too rough for it
-  if (after.converged || state_.slow == kMostSlow || state_.iteration >= GaussNewtonSteps()) {
+  if (after.converged || state_.slow == kMostSlowSteps || state_.iteration >= GaussNewtonSteps()) {
     BeginAdam(state_.iteration < GaussNewtonSteps());
   }
 }
@@ -160,7 +155,7 @@ void FullFit::StepAdam() {
     state_.best = state_.x;
   }
   ++state_.slow;
-  if (state_.best_mean_square < kSlow * state_.gained_mean_square) {
+  if (state_.best_mean_square < kSlowStep * state_.gained_mean_square) {
     state_.gained_mean_square = state_.best_mean_square;
     state_.slow = 0;
   }
@@ -182,8 +177,8 @@ void FullFit::StepAdam() {
   state_.adam_mean = adam.mean;
   state_.adam_mean_square = adam.mean_square;
   status_ = fmt::format(
-      "single springs: {:.3f} mm, best {:.3f}{}", Millimetres(mean_square),
-      Millimetres(state_.best_mean_square),
+      "single springs: {:.3f} mm, best {:.3f}{}", PointMillimetres(mean_square),
+      PointMillimetres(state_.best_mean_square),
       problem.cuts() > 0 ? fmt::format(" (adjoint cut into {} windows)", problem.cuts() + 1) : "");
   const bool stuck = state_.slow >= kPatience && options_.epochs == 0;
   if (++state_.iteration < AdamSteps() && !stuck) return;

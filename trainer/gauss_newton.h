@@ -38,6 +38,11 @@ struct GaussNewtonOptions {
   Eigen::VectorXd scale;      // D: how strongly each entry acts, relative to the others
 };
 
+// A step that leaves more of the mean square than this gains little, and so many in a row end a
+// fit.
+constexpr double kSlowStep = 0.99;
+constexpr int kMostSlowSteps = 2;
+
 // One step, with r^2's mean at the start as variance. Returns the new state (the old x with
 // `converged` where no trial was better).
 GaussNewtonState GaussNewtonStep(LeastSquares* problem, const GaussNewtonState& state,

@@ -19,11 +19,9 @@ namespace physpring {
 namespace {
 
 constexpr int kMostLevelRecordings = 4;  // that common factors are fitted to
-constexpr int kMostSpringRecordings = 12;
-constexpr int kFirstGain = 1;  // of kObserverGains: a Galerkin projection is not far off
-constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
-constexpr int kStepsPerGain = 4;
-constexpr int kGaussNewtonSteps = 6;
+constexpr int kFirstGain = 1;            // of kObserverGains: a Galerkin projection is not far off
+constexpr int kLevelStepsPerGain = 4;
+constexpr int kLevelGaussNewtonSteps = 6;
 constexpr int kLevelConjugateGradients = 12;
 
 // Of a frame: never more than level 0 needs.
@@ -31,9 +29,6 @@ int MostSubsteps(const TwinLevel& dense, double fps) {
   return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
 }
-
-// Of points, from the mean square of their coordinates' residuals.
-double Millimetres(double mean_square) { return 1e3 * std::sqrt(3 * mean_square); }
 
 }  // namespace
 
@@ -106,8 +101,9 @@ void LevelFit::StepCommon() {
   damping_ = state.damping;
   mean_square_ = state.mean_square > 0 ? state.mean_square
                                        : std::numeric_limits<double>::infinity();  // it diverges
-  status_ = fmt::format("level {}, common factors: {:.3f} mm", level_, Millimetres(mean_square_));
-  if (++iteration_ < kStepsPerGain && !state.converged) return;
+  status_ =
+      fmt::format("level {}, common factors: {:.3f} mm", level_, PointMillimetres(mean_square_));
+  if (++iteration_ < kLevelStepsPerGain && !state.converged) return;
   iteration_ = 0;
   damping_ = 1e-2;
   if (++gain_ <= kLastGain) return;
@@ -186,9 +182,10 @@ void LevelFit::StepSprings() {
   springs_ = after.x;
   damping_ = after.damping;
   mean_square_ = after.mean_square;
-  status_ = fmt::format("level {}, single springs: {:.3f} mm", level_, Millimetres(mean_square_));
+  status_ =
+      fmt::format("level {}, single springs: {:.3f} mm", level_, PointMillimetres(mean_square_));
   const bool slow = iteration_ > 0 && after.mean_square > 0.99 * before.mean_square;
-  if (++iteration_ >= kGaussNewtonSteps || after.converged || slow) stage_ = Stage::kDone;
+  if (++iteration_ >= kLevelGaussNewtonSteps || after.converged || slow) stage_ = Stage::kDone;
 }
 
 bool LevelFit::Step() {
@@ -228,7 +225,7 @@ double LevelFit::Progress() const {
     case Stage::kNetwork:
       return 0.2 + 0.2 * corrections_.Progress();
     case Stage::kSprings:
-      return 0.4 + 0.6 * iteration_ / kGaussNewtonSteps;
+      return 0.4 + 0.6 * iteration_ / kLevelGaussNewtonSteps;
     case Stage::kDone:
       return 1;
   }

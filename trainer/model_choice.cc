@@ -28,8 +28,7 @@ struct Round {
 constexpr std::array<Round, 3> kRounds = {{{0, 1, 5, 3}, {2, 3, 6, 1}, {3, 3, 6, 1}}};
 constexpr int kRoundCount = static_cast<int>(kRounds.size());
 constexpr int kChoiceConjugateGradients = 20;
-// Start systems tried, in sub-steps a frame, and (on a ground) changes of the friction's factor.
-constexpr double kSoftest = 2, kStiffest = 64;
+// Changes of the friction's factor that are tried (on a ground).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -67,13 +66,14 @@ ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
   }
   round_order_.resize(contenders_.size());
   std::iota(round_order_.begin(), round_order_.end(), 0);
-  StartSystem(first(), contenders_[0].model.candidate, kSoftest);  // throws where there is no body
+  StartSystem(first(), contenders_[0].model.candidate,
+              kSoftestStart);  // throws where there is no body
 }
 
 // Among a few start systems from soft to stiff, slippery to rough, the one that predicts best.
 void ModelChoice::SearchStart(ChosenModel* model) const {
   double least = kInfinity;
-  for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
+  for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
     const Parameters factors =
         CommonFactors(StartSystem(first(), model->candidate, substeps), first());
     TrackProblem::Options follow = FollowOptions(first(), model->candidate, options_);

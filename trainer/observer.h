@@ -21,6 +21,7 @@ namespace physpring {
 
 // The gains of a fit, one after the other.
 inline constexpr std::array<double, 5> kObserverGains = {0.5, 0.2, 0.1, 0.05, 0};
+inline constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
 
 // Corrects the state after a frame, predicted at `position` (3 x nodes), with this gain: 0 (nothing
 // is corrected) ... 1.

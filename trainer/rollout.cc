@@ -11,9 +11,6 @@
 namespace physpring {
 namespace {
 
-// A body that moved this far has diverged, m.
-constexpr double kFarAway = 1e3;
-
 template <class Real>
 class RolloutIn : public Rollout {
  public:

@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_TRAINER_TRACK_PROBLEM_H_
 #define PHYSPRING_TRAINER_TRACK_PROBLEM_H_
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,9 @@
 #include "twin/stability.h"
 
 namespace physpring {
+
+// Root mean square distance of points, mm, from the mean square of their coordinates' residuals.
+inline double PointMillimetres(double mean_square) { return 1e3 * std::sqrt(3 * mean_square); }
 
 class TrackProblem : public LeastSquares {
  public:

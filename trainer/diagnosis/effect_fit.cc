@@ -15,17 +15,14 @@
 namespace physpring {
 namespace {
 
-constexpr double kTrustedScale = 0.05;          // of common factors that hardly move
-constexpr double kSoftest = 2, kStiffest = 64;  // start systems tried, in sub-steps a frame
+constexpr double kTrustedScale = 0.05;  // of common factors that hardly move
 constexpr int kSpringConjugateGradients = 20;
 constexpr double kEffectScale = 30;  // of an effect's parameters beside the springs' own
 
 // Of single springs, first under an observer with this gain.
 constexpr double kFollowedGain = 0.05;
-constexpr int kFollowedSteps = 3;
+constexpr int kFollowedSpringSteps = 3;
 
-constexpr double kSlow = 0.99;  // a step of Gauss-Newton that leaves more gains little ...
-constexpr int kMostSlow = 2;    // ... and so many in a row end it
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
 constexpr double kMostRate = 10000, kMostCommonRate = 5000;
 
@@ -112,7 +109,7 @@ SpringMassSystem EffectFitting::Base(std::size_t body, double start_substeps) co
 
 EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) const {
   EffectFit best;
-  for (double substeps = kSoftest; substeps <= kStiffest; substeps *= 2) {
+  for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
     EffectFit fit;
     fit.body = body;
     fit.start = effects;
@@ -220,15 +217,15 @@ void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
     state.damping = 1e-3;
     state.converged = false;
     int slow = 0;
-    for (int step = 0; step < (followed ? kFollowedSteps : steps); ++step) {
+    for (int step = 0; step < (followed ? kFollowedSpringSteps : steps); ++step) {
       const double before = state.mean_square;
       PieceKey key = KeyOf("Gauss-Newton", *fit);
       const Eigen::VectorXd after =
           journal().Get(key.Add(fit->x).Add(gain).Add(state.x).Add(state.damping),
                         [&] { return Pack(GaussNewtonStep(&problem, state, prior)); });
       Unpack(after, &state);
-      slow = step > 0 && state.mean_square > kSlow * before ? slow + 1 : 0;
-      if (state.converged || slow == kMostSlow) break;
+      slow = step > 0 && state.mean_square > kSlowStep * before ? slow + 1 : 0;
+      if (state.converged || slow == kMostSlowSteps) break;
     }
   }
   EffectProblem problem = MakeProblem(model, velocity, 0, threads_);

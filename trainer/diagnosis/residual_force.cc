@@ -19,10 +19,11 @@
 namespace physpring {
 namespace {
 
-constexpr double kGain = 0.35;                   // of the observer
-constexpr int kLinearisations = 3, kSteps = 12;  // of conjugate gradients, for each
-constexpr double kEnough = 1.05;                 // times the variance of the measurements
-constexpr double kGains = 0.999;  // a linearisation that leaves more of the square is the last one
+constexpr double kResidualGain = 0.35;               // of the observer
+constexpr int kLinearisations = 3, kKickSteps = 12;  // of conjugate gradients, for each
+constexpr double kEnough = 1.05;                     // times the variance of the measurements
+constexpr double kGainsEnough =
+    0.999;  // a linearisation that leaves more of the square is the last one
 
 // Kicks, as one vector: 3 x nodes of each frame but the last.
 class KickProblem {
@@ -96,7 +97,7 @@ class KickProblem {
     options.controller_velocity = options_.controller_velocity;
     options.substeps = options_.substeps;
     options.growth_limit = std::numeric_limits<double>::infinity();
-    options.observer_gain = kGain;
+    options.observer_gain = kResidualGain;
     options.kicks = &kicks;
     return RollOut(system_, {&recording_, frames_}, options);
   }
@@ -172,7 +173,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
   int steps = 0;
   for (int i = 0; i < kLinearisations && r->squaredNorm() > target; ++i) {
     const double before = r->squaredNorm();
-    const Eigen::VectorXd step = Cgls(problem, *r, target, kSteps, &steps);
+    const Eigen::VectorXd step = Cgls(problem, *r, target, kKickSteps, &steps);
     std::optional<Eigen::VectorXd> best;
     for (double length : {1.0, 0.4, 0.1}) {
       const auto trial = problem.At(x + length * step);
@@ -183,7 +184,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
     }
     if (!best) break;
     r = problem.Linearise(x);
-    if (r->squaredNorm() > kGains * before) break;
+    if (r->squaredNorm() > kGainsEnough * before) break;
   }
 
   ResidualForce result;

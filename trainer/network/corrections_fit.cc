@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kPatience = 5;         // epochs without gain on held-back frames
+constexpr int kNetworkPatience = 5;  // epochs without gain on held-back frames
 constexpr double kShorterSteps = 4;  // times, after turning back
 
 void StoreAdam(const std::string& name, const Adam& adam, StateArrays* arrays) {
@@ -46,7 +46,7 @@ bool CorrectionsFit::Judge(double score) {
     best_contact_ = contact_;
     best_iteration_ = iteration_;
   }
-  const bool worse = iteration_ - best_iteration_ >= kPatience * UpdatesPerEpoch();
+  const bool worse = iteration_ - best_iteration_ >= kNetworkPatience * UpdatesPerEpoch();
   if (worse || iteration_ >= options_.epochs * UpdatesPerEpoch()) {
     weights_ = best_weights_;
     contact_ = best_contact_;

@@ -21,7 +21,7 @@ constexpr int kTopologyDraws = 6;  // an iteration
 constexpr double kHottest = 1, kColdest = 0.1;
 constexpr std::size_t kCandidates = 3;
 constexpr int kMostRecordings = 4;
-constexpr double kGain = 0.1;      // of the observer
+constexpr double kDrawGain = 0.1;  // of the observer
 constexpr double kDiverged = 1e3;  // m, the error of a level that diverges
 
 }  // namespace
@@ -48,7 +48,7 @@ double TopologyFit::PredictionError(const Assignment& assignment) const {
   options.rollout.single_precision = true;
   options.rollout.controller_velocity = twin.controller_velocity;
   options.rollout.substeps = options_.substeps;
-  options.rollout.observer_gain = kGain;
+  options.rollout.observer_gain = kDrawGain;
   options.most_substeps = std::numeric_limits<int>::max();
   const LiftedMotion level(twin, static_cast<int>(twin_.levels.size()), episodes_, options);
   const SpringMassSystem& system = twin.levels.back().system;
