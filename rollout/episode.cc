@@ -49,7 +49,7 @@ struct Run {
   Observation observation;
 
   void Observe(int frame) {
-    Episode& episode = result.episode;
+    TaskEpisode& episode = result.episode;
     const Stopwatch watch(&result.seconds.scoring);
     observation.frame = frame;
     observation.robot = simulation.Robot();

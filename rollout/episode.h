@@ -30,7 +30,7 @@ class Viewer {
   virtual double seconds() const = 0;  // spent on drawing so far
 };
 
-struct Episode {
+struct TaskEpisode {
   EpisodeStart start;
   int level = 0;
   bool success = false;
@@ -52,7 +52,7 @@ struct EpisodeSeconds {
 };
 
 struct EpisodeResult {
-  Episode episode;
+  TaskEpisode episode;
   EpisodeSeconds seconds;
 };
 

@@ -25,7 +25,7 @@ Json ToJson(const Pose& pose) {
   return {{"position", ToJson(pose.position)}, {"quaternion", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-std::string FormatVerdict(const Episode& episode) {
+std::string FormatVerdict(const TaskEpisode& episode) {
   const EpisodeSummary summary = Summarise({episode, {}});
   const Json json = {{"episode", summary.episode},
                      {"level", summary.level},
@@ -69,7 +69,7 @@ NpzArray Path(const std::vector<Points>& frames) {
   return NpzArray::Doubles({frames.size(), nodes, 3}, values.data());
 }
 
-Npz Arrays(const Episode& episode, bool states) {
+Npz Arrays(const TaskEpisode& episode, bool states) {
   Npz arrays;
   arrays["actions"] = Table(episode.actions);
   arrays["value"] = NpzArray::Doubles({episode.value.size()}, episode.value.data());
@@ -88,7 +88,7 @@ EpisodeSeconds ReadSeconds(const std::string& file) {
 }  // namespace
 
 EpisodeSummary Summarise(const EpisodeResult& result) {
-  const Episode& episode = result.episode;
+  const TaskEpisode& episode = result.episode;
   EpisodeSummary summary;
   summary.episode = episode.start.episode;
   summary.level = episode.level;
@@ -106,7 +106,7 @@ std::string EpisodePath(const std::string& folder, int level, int episode) {
 }
 
 void WriteEpisode(const std::string& folder, const EpisodeResult& result, bool states) {
-  const Episode& episode = result.episode;
+  const TaskEpisode& episode = result.episode;
   const std::string path = EpisodePath(folder, episode.level, episode.start.episode);
   WriteNpz(Arrays(episode, states), path + ".npz");
   WriteFileAtomically(path + ".seconds.json", FormatSeconds(result.seconds));

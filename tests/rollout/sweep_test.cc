@@ -192,7 +192,7 @@ TEST_F(SweepTest, WrongActionsEndTheEpisodeWithAReason) {
 
 TEST_F(SweepTest, HandGoesNoFasterThanTheTaskAllows) {
   FixedPolicy far(CartesianAction({{0.04, -5, 0.03}, Yaw(0)}, 0));
-  const Episode episode = RunOne(&far).episode;
+  const TaskEpisode episode = RunOne(&far).episode;
   ASSERT_EQ(episode.problem, "");
   // 20 frames at 0.5 m/s and 30 Hz: the hand hangs behind its target by what the weld gives
   EXPECT_NEAR(episode.robot.back()[1], -0.06 - 20 * 0.5 / 30, 0.03);

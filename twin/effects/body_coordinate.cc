@@ -9,13 +9,13 @@
 namespace physpring {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoSpring = std::numeric_limits<double>::infinity();
 constexpr double kPatch = 0.5;  // of the distance between neighbours
 
 // Half the mean length of the shortest springs of the nodes.
 double PatchRadius(const SpringMassSystem& system) {
   const int nodes = system.node_count();
-  Eigen::VectorXd shortest = Eigen::VectorXd::Constant(nodes, kInfinity);
+  Eigen::VectorXd shortest = Eigen::VectorXd::Constant(nodes, kNoSpring);
   for (const auto& [a, b] : system.springs) {
     const double length = (system.position.col(a) - system.position.col(b)).norm();
     for (int node : {a, b}) {
@@ -25,7 +25,7 @@ double PatchRadius(const SpringMassSystem& system) {
   double sum = 0;
   int count = 0;
   for (double length : shortest) {
-    if (length == kInfinity) continue;
+    if (length == kNoSpring) continue;
     sum += length, ++count;
   }
   return kPatch * sum / std::max(1, count);
