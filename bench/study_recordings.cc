@@ -15,10 +15,9 @@ namespace physpring {
 namespace {
 
 constexpr int kFrames = 75, kSteps = 100;  // steps of MuJoCo a frame
-// An effect's size grows by this factor, at most so many times, until it moves the body so far, in
-// the mean: what moves it less is lost in the noise.
-constexpr double kGrowth = 1.5, kLeastMoved = 4e-3;  // m
-constexpr int kMostGrowths = 6;
+// An effect's size grows by this factor, up to the largest, until it moves the body so far, in the
+// mean: what moves it less is lost in the noise.
+constexpr double kGrowth = 1.5, kLargestSize = 4, kLeastMoved = 4e-3;  // m
 constexpr double kFps = 50, kTimestep = 1 / (kFps * kSteps);
 constexpr double kMass = 0.03;         // kg, of the body
 constexpr double kYoung = 1;           // N: stiffness times length of the shortest springs
@@ -275,12 +274,13 @@ MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise
   const Recording without = Record(lattice, {}, first);
   SceneEffects effects;
   MadeRecordings made;
-  for (int growth = 0; growth <= kMostGrowths; ++growth, size *= kGrowth) {
+  for (;; size *= kGrowth) {
     Random same = place;
     effects = MakeEffect(effect, size, lattice, &same);
     made.fit = Record(lattice, effects, first);
     made.displacement = MeanDistance(made.fit, without);
     if (effect == "none" || made.displacement >= kLeastMoved) break;
+    if (kGrowth * size > kLargestSize) break;
   }
   made.other = Record(lattice, effects, second);
   made.fit.name = effect + " fit", made.other.name = effect + " other";
