@@ -8,14 +8,6 @@
 #include "twin/uniform.h"
 
 namespace physpring {
-namespace {
-
-double Normal(std::mt19937_64* random) {  // Box and Muller
-  const double radius = std::sqrt(-2 * std::log(1 - Uniform(random)));
-  return radius * std::cos(2 * std::numbers::pi * Uniform(random));
-}
-
-}  // namespace
 
 EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode,
                      const Disturbance& disturbance) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -47,10 +46,7 @@ class NormalSource {
 
   Eigen::VectorXd Vector(Eigen::Index size) {
     Eigen::VectorXd z(size);
-    for (double& value : z) {
-      const double radius = std::sqrt(-2 * std::log(1 - Uniform(&generator_)));
-      value = radius * std::cos(2 * std::numbers::pi * Uniform(&generator_));
-    }
+    for (double& value : z) value = Normal(&generator_);
     return z;
   }
 

@@ -17,6 +17,7 @@ class Random {
   explicit Random(std::uint64_t seed) : generator_(seed) {}
   // Uniform in [low, high).
   double operator()(double low, double high) { return low + (high - low) * Uniform(&generator_); }
+  double Normal() { return physpring::Normal(&generator_); }  // of deviation 1
   // 3 x count, each entry uniform in [-size, size).
   Points Box(int count, double size) {
     Points points(3, count);

@@ -122,9 +122,9 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   if (accepted.track.held > kUnexplained * result.noise_floor) {
     result.unexplained = FindUnexplained(splits, accepted, result.noise_floor);
   }
-  std::vector<const EffectFit*> explained{&loop.before()};
-  if (!result.effects.empty()) explained.push_back(&accepted);
-  const auto residuals = ResidualsOf(fitting, explained, noise, kResidualShare);
+  std::vector<const EffectFit*> fits{&loop.before()};
+  if (!result.effects.empty()) fits.push_back(&accepted);
+  const auto residuals = ResidualsOf(fitting, fits, noise, kResidualShare);
   result.residual_before = residuals.front();
   result.residual_after = residuals.back();
   result.twin = TwinWith(twin, accepted, result.effects, recordings);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <random>
 #include <utility>
@@ -131,7 +130,6 @@ Eigen::VectorXd Cgls(const KickProblem& problem, const Eigen::VectorXd& r, doubl
   double squared = gradient.squaredNorm();
   for (int i = 0; i < most && left.squaredNorm() > target && squared > 0; ++i) {
     const Eigen::VectorXd q = problem.JacobianTimes(p);
-
     if (!(q.squaredNorm() > 0)) break;
     const double alpha = squared / q.squaredNorm();
     s += alpha * p;
@@ -148,10 +146,7 @@ Eigen::VectorXd Cgls(const KickProblem& problem, const Eigen::VectorXd& r, doubl
 Eigen::VectorXd NormalNoise(Eigen::Index count, double deviation) {
   std::mt19937_64 generator(1);
   Eigen::VectorXd noise(count);
-  for (double& value : noise) {
-    const double u = Uniform(&generator), v = Uniform(&generator);
-    value = deviation * std::sqrt(-2 * std::log(1 - u)) * std::cos(2 * std::numbers::pi * v);
-  }
+  for (double& value : noise) value = deviation * Normal(&generator);
   return noise;
 }
 
@@ -161,8 +156,9 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
                                 const ResidualForceOptions& options) {
   KickProblem problem(system, recording, options);
   const int nodes = system.node_count();
-  if (problem.rows() == 0)
+  if (problem.rows() == 0) {
     return {{}, {recording.start.leftCols(nodes)}, Eigen::VectorXd::Zero(nodes), 0};
+  }
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.size());
   auto r = problem.Linearise(x);
   if (!r) {
@@ -174,15 +170,15 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
   for (int i = 0; i < kLinearisations && r->squaredNorm() > target; ++i) {
     const double before = r->squaredNorm();
     const Eigen::VectorXd step = Cgls(problem, *r, target, kKickSteps, &steps);
-    std::optional<Eigen::VectorXd> best;
+    bool better = false;
     for (double length : {1.0, 0.4, 0.1}) {
       const auto trial = problem.At(x + length * step);
       if (!trial || trial->squaredNorm() >= before) continue;
       x += length * step;
-      best = trial;
+      better = true;
       break;
     }
-    if (!best) break;
+    if (!better) break;
     r = problem.Linearise(x);
     if (r->squaredNorm() > kGainsEnough * before) break;
   }
@@ -191,8 +187,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
   const double fps = recording.fps;
   const Eigen::VectorXd mass = system.mass.head(nodes);
   result.position = problem.rollout().positions();
-  result.left =
-      std::sqrt(r->squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r->size())));
+  result.left = std::sqrt(r->squaredNorm() / static_cast<double>(r->size()));
   for (const Points& kick : problem.Unpack(x)) {
     result.force.emplace_back(fps * (kick.array().rowwise() * mass.transpose().array()).matrix());
   }
@@ -204,7 +199,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
   for (const Points& kick : problem.Unpack(of_noise)) {
     squared += kick.colwise().squaredNorm().transpose();
   }
-  const double values = 3 * static_cast<double>(std::max<std::size_t>(1, result.force.size()));
+  const double values = 3 * static_cast<double>(result.force.size());
   result.noise = fps * mass.cwiseProduct((squared / values).cwiseSqrt());
   return result;
 }

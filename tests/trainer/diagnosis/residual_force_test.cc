@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kParticles = 8, kFrames = 60;
 constexpr double kNoise = 3e-4;
+constexpr double kTilt = 0.2;  // rad, about y
 
 struct Case {
   Recording recording = SwungRope(kParticles, kFrames);
@@ -37,11 +38,12 @@ struct Case {
     Random random(3);
     for (int t = 1; t < kFrames; ++t) {
       for (double& value : recording.points[static_cast<std::size_t>(t)].reshaped()) {
-        value += kNoise * std::sqrt(-2 * std::log(1 - random(0, 1))) *
-                 std::cos(2 * std::numbers::pi * random(0, 1));
+        value += kNoise * random.Normal();
       }
     }
   }
+
+  void MoveUnderTiltedGravity() { MoveWith("gravity_direction", Eigen::Vector2d(0, kTilt)); }
 
   ResidualForce Find() const {
     ResidualForceOptions options;
@@ -54,9 +56,7 @@ struct Case {
 
 TEST(ResidualForce, FollowsTheMeasuredMotionUpToItsNoise) {
   Case c;
-  Eigen::VectorXd tilt(2);
-  tilt << 0, 0.2;
-  c.MoveWith("gravity_direction", tilt);
+  c.MoveUnderTiltedGravity();
   const ResidualForce residual = c.Find();
   ASSERT_EQ(residual.force.size(), static_cast<std::size_t>(kFrames - 1));
   ASSERT_EQ(residual.position.size(), static_cast<std::size_t>(kFrames));
@@ -66,13 +66,11 @@ TEST(ResidualForce, FollowsTheMeasuredMotionUpToItsNoise) {
 
 TEST(ResidualForce, OfATiltedGravityIsOneAcceleration) {
   Case c;
-  Eigen::VectorXd tilt(2);
-  tilt << 0, 0.2;
-  c.MoveWith("gravity_direction", tilt);
+  c.MoveUnderTiltedGravity();
   const ResidualPattern pattern = c.Pattern();
   EXPECT_GT(pattern.constant, 0.6);
   // smaller than it was: what acts next to the hand moves nothing
-  const double tilted = 9.81 * std::sin(0.2);
+  const double tilted = 9.81 * std::sin(kTilt);
   EXPECT_GT(std::abs(pattern.acceleration[0]), 0.6 * tilted);
   EXPECT_LT(std::abs(pattern.acceleration[0]), 1.1 * tilted);
   EXPECT_NEAR(pattern.acceleration[1], 0, 0.05 * tilted);
@@ -102,9 +100,7 @@ TEST(ResidualForce, IsNoMoreThanNoiseWhereNothingIsMissing) {
 
 TEST(ResidualForce, LeavesUnseenFramesAlone) {
   Case c;
-  Eigen::VectorXd tilt(2);
-  tilt << 0, 0.2;
-  c.MoveWith("gravity_direction", tilt);
+  c.MoveUnderTiltedGravity();
   for (int t = kFrames - 10; t < kFrames; ++t) {
     c.recording.points[static_cast<std::size_t>(t)].setConstant(std::nan(""));
   }
