@@ -21,6 +21,7 @@
 #include "cli/progress.h"
 #include "cli/resume_options.h"
 #include "trainer/diagnosis/diagnosis.h"
+#include "trainer/diagnosis/diagnosis_recordings.h"
 #include "trainer/fit_data.h"
 #include "twin/atomic_file.h"
 #include "twin/dataset.h"
@@ -106,17 +107,19 @@ void Run(const DiagnoseArguments& arguments) {
   const FitData data = ReadFitData(fit);
   std::vector<Recording> judged;
   for (const RecordingEntry& entry : held_out) judged.push_back(ReadRecording(entry.path));
+  const DiagnosisRecordings chosen = ChooseRecordings(data, judged);
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
-  const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, data.recordings, judged,
-                                       arguments.options);
+  const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen.fit,
+                                       chosen.held_out, arguments.options);
   checkpoint.ExpectReplaceable(outputs.report, arguments.run.resume || arguments.run.force);
-  const Diagnosis diagnosis = DiagnoseWith(checkpoint, twin, data.recordings, judged, arguments);
+  const Diagnosis diagnosis =
+      DiagnoseWith(checkpoint, twin, chosen.fit, chosen.held_out, arguments);
   const std::string json = FormatDiagnosisJson(diagnosis);
   WriteFileAtomically(outputs.report, json);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, json);
   const std::string name = std::filesystem::path(arguments.twin).filename().string();
   WriteFileAtomically(outputs.page,
-                      FormatDiagnosisPage(diagnosis, data.recordings[0], "Diagnosis of " + name));
+                      FormatDiagnosisPage(diagnosis, chosen.fit[0], "Diagnosis of " + name));
   WriteTwin(diagnosis.twin, outputs.twin);
   checkpoint.Finish();
   fmt::print("{}", FormatDiagnosisText(diagnosis));
@@ -135,7 +138,8 @@ void AddDiagnoseCommand(CLI::App& app) {
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command
       ->add_option("recordings", arguments->recordings,
-                   "recordings, or folders with a dataset.json (their `fit` ones)")
+                   "recordings, or folders with a dataset.json (their `fit` ones); of many, four "
+                   "are fitted")
       ->required()
       ->type_name("REC.npz|DIR");
   command
@@ -146,7 +150,8 @@ void AddDiagnoseCommand(CLI::App& app) {
       ->type_name("DIR");
   command
       ->add_option("--heldout", arguments->held_out,
-                   "recordings to judge by; without them the future frames, or blocks of frames")
+                   "recordings to judge by (of many, four); without them whole runs, of fewer than "
+                   "four the future frames, or blocks of frames")
       ->type_name("REC.npz|DIR");
   command->add_option("--json", arguments->json, "write report.json here, too")
       ->type_name("FILE.json");

@@ -2,6 +2,7 @@
 #include "cli/diagnosis_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -184,6 +185,16 @@ std::string DescribeResidual(const Diagnosis& diagnosis) {
                     100 * before.constant, before.with_velocity, before.with_stretch);
 }
 
+// "a, b", or `none`.
+std::string Join(const std::vector<std::string>& names, const char* none) {
+  return names.empty() ? none : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string DescribeRecordings(const Diagnosis& diagnosis) {
+  return fmt::format("fitted to {}; judged by {}", Join(diagnosis.fitted, "nothing"),
+                     Join(diagnosis.judged, "frames that were not fitted"));
+}
+
 // A curve of the errors in time as SVG.
 std::string TrackCurve(const FrameTrack& track, double top, const char* colour) {
   if (track.size() < 2) return "";
@@ -222,6 +233,7 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
          {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)}});
   }
   const Json report = {
+      {"recordings", {{"fit", diagnosis.fitted}, {"heldout", diagnosis.judged}}},
       {"noise_floor", diagnosis.noise_floor},
       {"before", Pair(diagnosis.before)},
       {"effects", EffectList(diagnosis)},
@@ -238,7 +250,8 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
 }
 
 std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
-  std::string text = fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
+  std::string text = DescribeRecordings(diagnosis) + "\n";
+  text += fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
   text += fmt::format("before: fit {}, held out {}\n", InMillimetres(diagnosis.before.fit),
                       InMillimetres(diagnosis.before.held));
   for (const EffectCandidate& candidate : diagnosis.candidates) {
@@ -265,8 +278,8 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
       "16px sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}td,th{{padding:.2em 1em .2em "
       "0;text-align:left}}svg{{width:100%;border:1px solid "
       "#ccc}}.plots{{display:grid;grid-template-columns:1fr 1fr;gap:"
-      "1em}}.plots text{{font-size:12px}}</style><h1>{0}</h1><p>{1}.</p>",
-      title, Verdict(diagnosis));
+      "1em}}.plots text{{font-size:12px}}</style><h1>{0}</h1><p>{1}.</p><p>{2}.</p>",
+      title, Verdict(diagnosis), DescribeRecordings(diagnosis));
   page += fmt::format(
       "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
       "<tr><td>before</td><td>{}</td><td>{}</td></tr><tr><td>after</td><td>{}</td><td>{}</td></tr>"

@@ -11,15 +11,6 @@ namespace {
 constexpr int kParts = 8;          // of a recording's fit frames ...
 constexpr int kOneHeldBackOf = 4;  // ... of which one in so many is held back
 
-template <class T>
-std::vector<T> SpreadEvenly(const std::vector<T>& all, int most) {
-  const int count = static_cast<int>(all.size());
-  if (count <= most) return all;
-  std::vector<T> some;
-  for (int i = 0; i < most; ++i) some.push_back(all[(2 * i + 1) * count / (2 * most)]);
-  return some;
-}
-
 // Whether frame 1 ... `last` is held back.
 bool IsHeldBack(int frame, int last) {
   if (last < kParts) return frame == last;
@@ -55,24 +46,34 @@ std::vector<Episode> FitEpisodes(const FitData& data, int most) {
   return SpreadEvenly(episodes, most);
 }
 
-HeldBack HoldBack(const FitData& data, int most) {
-  HeldBack split;
+std::vector<bool> HeldBackRuns(const FitData& data) {
+  std::vector<bool> held_back(data.recordings.size(), false);
   const std::set<int> runs(data.continuous_recording.begin(), data.continuous_recording.end());
-  if (runs.size() < kOneHeldBackOf) {
-    for (const Episode& episode : FitEpisodes(data, most)) {
-      split.fit.push_back(OnlyFrames(*episode.recording, false));
-      split.judged.push_back({episode.recording, OnlyFrames(*episode.recording, true)});
-    }
-    return split;
-  }
+  if (runs.size() < kOneHeldBackOf) return held_back;
   int run_index = 0;
   std::set<int> held;
   for (int run : runs) {
     if (run_index++ % kOneHeldBackOf == kOneHeldBackOf / 2) held.insert(run);
   }
+  for (std::size_t i = 0; i < held_back.size(); ++i) {
+    held_back[i] = held.contains(data.continuous_recording[i]);
+  }
+  return held_back;
+}
+
+HeldBack HoldBack(const FitData& data, int most) {
+  HeldBack split;
   std::vector<const Recording*> fit, judged;
+  const std::vector<bool> held_back = HeldBackRuns(data);
   for (std::size_t i = 0; i < data.recordings.size(); ++i) {
-    (held.contains(data.continuous_recording[i]) ? judged : fit).push_back(&data.recordings[i]);
+    (held_back[i] ? judged : fit).push_back(&data.recordings[i]);
+  }
+  if (judged.empty()) {
+    for (const Recording* recording : SpreadEvenly(fit, most)) {
+      split.fit.push_back(OnlyFrames(*recording, false));
+      split.judged.push_back({recording, OnlyFrames(*recording, true)});
+    }
+    return split;
   }
   for (const Recording* recording : SpreadEvenly(fit, most)) split.fit.push_back(*recording);
   for (const Recording* recording : SpreadEvenly(judged, most)) {

@@ -28,6 +28,20 @@ struct HeldBack {
 // recordings on each side, spread evenly. `data` must outlive the result.
 HeldBack HoldBack(const FitData& data, int most);
 
+// Of each recording, whether it is of a run that is held back whole: a quarter of the runs, spread
+// evenly, and none of fewer than four.
+std::vector<bool> HeldBackRuns(const FitData& data);
+
+// At most `most` of them, spread evenly.
+template <class T>
+std::vector<T> SpreadEvenly(const std::vector<T>& all, int most) {
+  const int count = static_cast<int>(all.size());
+  if (count <= most) return all;
+  std::vector<T> some;
+  for (int i = 0; i < most; ++i) some.push_back(all[(2 * i + 1) * count / (2 * most)]);
+  return some;
+}
+
 // All fit frames of at most `most` recordings, spread evenly.
 std::vector<Episode> FitEpisodes(const FitData& data, int most);
 

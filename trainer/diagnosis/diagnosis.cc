@@ -86,8 +86,12 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   for (const Recording& recording : recordings) {
     ExpectSameObject(twin, recording);
     result.trained_on |= TrainedOnThis(twin, recording);
+    result.fitted.push_back(recording.name);
   }
-  for (const Recording& recording : held_out) ExpectSameObject(twin, recording);
+  for (const Recording& recording : held_out) {
+    ExpectSameObject(twin, recording);
+    result.judged.push_back(recording.name);
+  }
   const std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
   const double noise = NoiseOf(splits);
   result.noise_floor = TrackNoiseFloor(noise);

@@ -55,8 +55,9 @@ struct EffectCandidate {
 };
 
 struct Diagnosis {
-  bool trained_on = false;  // the twin was trained on one of the recordings
-  double noise_floor = 0;   // track error of a perfect model, m
+  std::vector<std::string> fitted, judged;  // names of recordings; judged by none: by frames
+  bool trained_on = false;                  // the twin was trained on one of the recordings
+  double noise_floor = 0;                   // track error of a perfect model, m
   TrackPair before{}, after{};
   BootstrapResult gain;  // of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;

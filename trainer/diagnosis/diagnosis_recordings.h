@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which of many recordings of an object a diagnosis looks at: what a twin lacks shows in a few of
+// them, and each costs as much as the others.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_RECORDINGS_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_RECORDINGS_H_
+
+#include <vector>
+
+#include "trainer/fitter.h"
+#include "twin/recording.h"
+
+namespace physpring {
+
+struct DiagnosisRecordings {
+  std::vector<Recording> fit;
+  std::vector<Recording> held_out;  // none: frames of those to fit are held out
+};
+
+// Without recordings to judge by, whole runs of `data` are held out where it has enough of them
+// (HeldBackRuns): a run goes on where the one before it stopped, so parts of it know each other.
+// At most four on each side, spread evenly.
+DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_RECORDINGS_H_
