@@ -67,6 +67,16 @@ Twin TwinOf(const Recording& recording) {
   return twin;
 }
 
+// Where, when and in which direction something remains; null where nothing does.
+Json UnexplainedJson(const std::optional<Unexplained>& left) {
+  if (!left) return nullptr;
+  return {{"track", left->track},
+          {"point", left->point},
+          {"from_s", left->first_time},
+          {"to_s", left->last_time},
+          {"direction", {left->direction[0], left->direction[1], left->direction[2]}}};
+}
+
 Json Run(const Case& one) {
   const std::uint64_t seed = std::hash<std::string>()(one.Name());
   const MadeRecordings made = MakeWithEffect(one.body, one.effect, one.noise, seed);
@@ -90,7 +100,7 @@ Json Run(const Case& one) {
           {"effect", one.effect},
           {"noise", one.noise},
           {"found", diagnosis.effects.empty() ? "none" : diagnosis.effects[0].name},
-          {"unexplained", diagnosis.unexplained.has_value()},
+          {"unexplained", UnexplainedJson(diagnosis.unexplained)},
           {"displacement", made.displacement},
           {"noise_floor", diagnosis.noise_floor},
           {"before", diagnosis.before.held},
@@ -110,14 +120,14 @@ void PrintTable(const std::vector<Json>& cases) {
     double before = 0, after = 0, moved = 0, seconds = 0;
     std::map<std::string, int> instead;
     for (const Json& row : rows) {
-      const Json ranking = row.value("ranking", Json::array());  // none in older files
+      const Json& ranking = row["ranking"];
       first += !ranking.empty() && ranking[0]["name"] == effect ? 1 : 0;
       if (row["found"] == effect) {
         ++found;
       } else {
         ++instead[row["found"]];
       }
-      unexplained += row["unexplained"].get<bool>() ? 1 : 0;
+      unexplained += row["unexplained"].is_null() ? 0 : 1;
       before += row["before"].get<double>(), after += row["after"].get<double>();
       moved += row["displacement"].get<double>(), seconds += row["cpu_s"].get<double>();
     }
