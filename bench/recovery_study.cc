@@ -71,10 +71,17 @@ Twin TwinOf(const Recording& recording) {
 Json UnexplainedJson(const std::optional<Unexplained>& left) {
   if (!left) return nullptr;
   return {{"track", left->track},
-          {"point", left->point},
+          {"particle", left->particle},
           {"from_s", left->first_time},
           {"to_s", left->last_time},
-          {"direction", {left->direction[0], left->direction[1], left->direction[2]}}};
+          {"direction", {left->direction[0], left->direction[1], left->direction[2]}},
+          {"steadiness", left->steadiness}};
+}
+
+// Cosine between two series of vectors; null where one is 0.
+Json Cosine(const Points& p, const Points& q) {
+  const double norms = p.norm() * q.norm();
+  return norms > 0 ? Json(p.cwiseProduct(q).sum() / norms) : Json();
 }
 
 Json Run(const Case& one) {
@@ -101,6 +108,7 @@ Json Run(const Case& one) {
           {"noise", one.noise},
           {"found", diagnosis.effects.empty() ? "none" : diagnosis.effects[0].name},
           {"unexplained", UnexplainedJson(diagnosis.unexplained)},
+          {"net_force_cosine", Cosine(diagnosis.residual_before.net, made.outside)},
           {"displacement", made.displacement},
           {"noise_floor", diagnosis.noise_floor},
           {"before", diagnosis.before.held},

@@ -201,7 +201,18 @@ class Hands {
   Eigen::Vector3d amplitude_, rate_, phase_;
 };
 
-Recording Record(const Lattice& lattice, const SceneEffects& given, const Hands& hands) {
+// On all bodies, N.
+Eigen::Vector3d NetForce(const mjModel& model, const mjData& data) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int body = 1; body < model.nbody; ++body) {
+    sum += Eigen::Map<const Eigen::Vector3d>(data.xfrc_applied + 6 * body);
+  }
+  return sum;
+}
+
+// `outside`: the sum over the nodes of what acts on them from outside, N, 3 x steps of a frame.
+Recording Record(const Lattice& lattice, const SceneEffects& given, const Hands& hands,
+                 Points* outside = nullptr) {
   const std::string mjcf = Mjcf(lattice);
   const ModelPtr plain = CompileScene(mjcf, "study", [](mjSpec*) {});
   const SoftPoints soft = FindSoftPoints(*plain, "study");
@@ -221,6 +232,7 @@ Recording Record(const Lattice& lattice, const SceneEffects& given, const Hands&
   recording.rest = recording.start;
   recording.interior.resize(3, 0);
   recording.velocity = Points::Zero(3, lattice.nodes.cols());
+  if (outside != nullptr) *outside = Points::Zero(3, kFrames - 1);
   for (int frame = 0; frame < kFrames; ++frame) {
     recording.points.emplace_back(lattice.nodes +
                                   Eigen::Map<const Points>(data->qpos, 3, lattice.nodes.cols()));
@@ -230,6 +242,9 @@ Recording Record(const Lattice& lattice, const SceneEffects& given, const Hands&
       effects.Drive(time, model.get(), data.get());
       Eigen::Map<Points>(data->mocap_pos, 3, lattice.held.cols()) =
           lattice.held.colwise() + hands.At(time + kTimestep - effects.latency());
+      if (outside != nullptr && frame < kFrames - 1) {
+        outside->col(frame) += NetForce(*model, *data) / kSteps;
+      }
       Step(*model, data.get());
     }
   }
@@ -277,7 +292,7 @@ MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise
   for (;; size *= kGrowth) {
     Random same = place;
     effects = MakeEffect(effect, size, lattice, &same);
-    made.fit = Record(lattice, effects, first);
+    made.fit = Record(lattice, effects, first, &made.outside);
     made.displacement = MeanDistance(made.fit, without);
     if (effect == "none" || made.displacement >= kLeastMoved) break;
     if (kGrowth * size > kLargestSize) break;

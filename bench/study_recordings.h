@@ -21,6 +21,7 @@ const std::vector<std::string>& StudyEffects();
 struct MadeRecordings {
   Recording fit, other;     // two motions of one body
   double displacement = 0;  // mean distance that the effect makes on the first one, m
+  Points outside;  // 3 x steps of a frame of the first: net force of the effect from outside, N
 };
 
 // `noise`: standard deviation of a coordinate, m. The seed draws the motions, the effect's size and

@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kSteady = 0.7;  // a direction that turns by a third of a circle has 0.83
+
 // null where there is nothing to average over
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -58,15 +60,22 @@ Json Confounded(const Diagnosis& diagnosis) {
 
 Json Direction(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
 
+Json Vectors(const Points& vectors) {
+  Json list = Json::array();
+  for (const auto& vector : vectors.colwise()) list.push_back(Direction(vector));
+  return list;
+}
+
 Json UnexplainedJson(const Diagnosis& diagnosis) {
   if (!diagnosis.unexplained) return nullptr;
   const Unexplained& left = *diagnosis.unexplained;
   return {{"track", left.track},
-          {"point", left.point},
+          {"particle", left.particle},
           {"position", Direction(left.position)},
           {"from_s", left.first_time},
           {"to_s", left.last_time},
-          {"direction", Direction(left.direction)}};
+          {"direction", Direction(left.direction)},
+          {"steadiness", left.steadiness}};
 }
 
 Json BinnedJson(const BinnedMeans& means) {
@@ -82,6 +91,7 @@ Json ResidualJson(const ResidualPattern& pattern) {
           {"with_velocity", pattern.with_velocity},
           {"with_stretch", pattern.with_stretch},
           {"over_time_n", pattern.over_time},
+          {"net_n", Vectors(pattern.net)},
           {"frequency_step_hz", pattern.frequency_step},
           {"spectrum_n", pattern.spectrum},
           {"along_body", BinnedJson(pattern.along_body)},
@@ -164,10 +174,12 @@ std::string Verdict(const Diagnosis& diagnosis) {
   if (!diagnosis.unexplained) return verdict;
   const Unexplained& left = *diagnosis.unexplained;
   return fmt::format(
-      "{}{} above the noise are unexplained, most of it at point {}, {:.2f} to {:.2f} s, towards "
-      "({:.2f}, {:.2f}, {:.2f})",
-      verdict.empty() ? "" : verdict + "; ", InMillimetres(left.track), left.point, left.first_time,
-      left.last_time, left.direction[0], left.direction[1], left.direction[2]);
+      "{}{} above the noise are unexplained: a force, largest on particle {}, mostly from {:.2f} "
+      "to "
+      "{:.2f} s, then towards ({:.2f}, {:.2f}, {:.2f}), which {}",
+      verdict.empty() ? "" : verdict + "; ", InMillimetres(left.track), left.particle,
+      left.first_time, left.last_time, left.direction[0], left.direction[1], left.direction[2],
+      left.steadiness > kSteady ? "stays" : "turns");
 }
 
 // "missing force: ...": how large it is, and what it goes along with.

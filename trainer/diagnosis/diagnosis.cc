@@ -123,14 +123,15 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     result.certainty.erase(result.certainty.begin(),
                            result.certainty.end() - EffectValueCount(result.effects));
   }
-  if (accepted.track.held > kUnexplained * result.noise_floor) {
-    result.unexplained = FindUnexplained(splits, accepted, result.noise_floor);
-  }
   std::vector<const EffectFit*> fits{&loop.before()};
   if (!result.effects.empty()) fits.push_back(&accepted);
   const auto residuals = ResidualsOf(fitting, fits, noise, kResidualShare);
   result.residual_before = residuals.front();
   result.residual_after = residuals.back();
+  if (accepted.track.held > kUnexplained * result.noise_floor) {
+    result.unexplained = FindUnexplained(
+        result.residual_after, accepted.track.held - result.noise_floor, recordings[0].fps);
+  }
   result.twin = TwinWith(twin, accepted, result.effects, recordings);
   return result;
 }

@@ -101,9 +101,10 @@ ResidualPattern PatternOf(const ResidualForce& residual, const SpringMassSystem&
   pattern.noise = std::sqrt(3 * residual.noise.squaredNorm() / static_cast<double>(nodes));
   pattern.node = system.position.leftCols(nodes);
   pattern.mean_force = Points::Zero(3, nodes);
+  pattern.node_force = Eigen::VectorXd::Zero(nodes);
   if (steps == 0) return pattern;
 
-  Points sum(3, steps);
+  pattern.net.resize(3, steps);
   Eigen::VectorXd squared = Eigen::VectorXd::Zero(nodes);
   Comparison velocities, stretches;
   for (Eigen::Index t = 0; t < steps; ++t) {
@@ -118,9 +119,10 @@ ResidualPattern PatternOf(const ResidualForce& residual, const SpringMassSystem&
     pattern.mean_force += force / static_cast<double>(steps);
     squared += force.colwise().squaredNorm().transpose() / static_cast<double>(steps);
     pattern.over_time.push_back(force.norm() / std::sqrt(static_cast<double>(nodes)));
-    sum.col(t) = force.rowwise().sum();
+    pattern.net.col(t) = force.rowwise().sum();
   }
   pattern.root_mean_square = std::sqrt(squared.mean());
+  pattern.node_force = squared.cwiseSqrt();
   pattern.against_speed = velocities.Means();
   pattern.with_velocity = velocities.Cosine();
   pattern.against_stretch = stretches.Means();
@@ -128,14 +130,14 @@ ResidualPattern PatternOf(const ResidualForce& residual, const SpringMassSystem&
 
   const Eigen::VectorXd along = BodyCoordinate(system);
   std::vector<Sample> places;
-  for (Eigen::Index i = 0; i < nodes; ++i) places.push_back({along[i], std::sqrt(squared[i])});
+  for (Eigen::Index i = 0; i < nodes; ++i) places.push_back({along[i], pattern.node_force[i]});
   pattern.along_body = Bin(places);
-  pattern.spectrum = Spectrum(sum);
+  pattern.spectrum = Spectrum(pattern.net);
   pattern.frequency_step = fps / static_cast<double>(steps);
 
   // forces m a are nearest to `force`, by force^2 / mass, with the mean of all forces over M
   const auto mass = system.mass.head(nodes);
-  pattern.acceleration = sum.rowwise().mean() / mass.sum();
+  pattern.acceleration = pattern.net.rowwise().mean() / mass.sum();
   double all = 0;
   for (const Points& force : residual.force) {
     all += (force.colwise().squaredNorm().transpose().array() / mass.array()).sum();

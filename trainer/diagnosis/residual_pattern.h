@@ -23,6 +23,8 @@ struct ResidualPattern {
   double left = 0;    // root mean square of a measured coordinate's residual with the forces, m
   Points node;        // 3 x nodes, in the reference configuration, m
   Points mean_force;  // on each node, over time, N
+  Eigen::VectorXd node_force;     // root mean square over time, on each node, N
+  Points net;                     // 3 x steps of a frame: the sum over the nodes, N
   std::vector<double> over_time;  // root mean square over the nodes, each step of a frame, N
   std::vector<double> spectrum;   // amplitude of the sum over nodes at k / duration, k >= 1, N
   double frequency_step = 0;      // 1 / duration, Hz

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pattern of what no effect explains.
+// The pattern of what no effect explains, from the forces that are still missing. (The error of the
+// prediction would not do: of a body that hangs it is largest at the free end, whatever the cause.)
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_UNEXPLAINED_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_UNEXPLAINED_H_
 
-#include <vector>
-
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/residual_pattern.h"
 
 namespace physpring {
 
 struct Unexplained {
   double track = 0;                      // error left above the noise floor, m
-  int point = 0;                         // where it is largest ...
+  int particle = 0;                      // where the missing force is largest over time ...
   Eigen::Vector3d position;              // ... its place in the reference configuration, m
-  double first_time = 0, last_time = 0;  // when most of it is seen, s
-  Eigen::Vector3d direction;             // mean direction of measured minus predicted there
+  double first_time = 0, last_time = 0;  // the shortest time with half of its square, s
+  Eigen::Vector3d direction;             // of the sum over all nodes, in the mean of that time
+  double steadiness = 0;  // of that direction: 1 it stays, 0 it turns to all sides alike
 };
 
-// Where, when and in which direction the error of a judged fit is largest, in the first recording.
-Unexplained FindUnexplained(const std::vector<SplitRecording>& recordings, const EffectFit& fit,
-                            double floor);
+// `track`: error left above the noise floor, m.
+Unexplained FindUnexplained(const ResidualPattern& missing, double track, double fps);
 
 }  // namespace physpring
 
