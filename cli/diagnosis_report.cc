@@ -230,8 +230,8 @@ std::string TrackPlot(const Diagnosis& diagnosis) {
       "<svg viewBox='0 0 800 210' role='img'><line x1='0' x2='800' y1='{0:.1f}' y2='{0:.1f}' "
       "stroke='#888' stroke-dasharray='4'/>{1}{2}</svg><p>Track error of held-out frames, one "
       "after the other; the top is {3}. Red: before, blue: after, dashed: noise floor.</p>",
-      floor, TrackCurve(diagnosis.before_track, top, "#c33"),
-      TrackCurve(diagnosis.after_track, top, "#25c"), InMillimetres(top));
+      floor, TrackCurve(diagnosis.before_track, top, kBeforeColour),
+      TrackCurve(diagnosis.after_track, top, kAfterColour), InMillimetres(top));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace physpring {
 namespace {
 
-constexpr char kBefore[] = "#c33", kAfter[] = "#25c";
+constexpr const char* kAxisColours[] = {"#c33", "#393", "#25c"};
 constexpr double kPlotWidth = 400, kPlotHeight = 240, kPlotLeft = 60, kPlotRight = 390,
                  kPlotTop = 26, kPlotBottom = 205;
 
@@ -104,8 +104,8 @@ std::string ForceArrows(const Diagnosis& diagnosis, const View& view) {
           colour, 0.8 * radius);
     }
   };
-  add(before, kBefore);
-  if (!diagnosis.effects.empty()) add(after, kAfter);
+  add(before, kBeforeColour);
+  if (!diagnosis.effects.empty()) add(after, kAfterColour);
   return svg + fmt::format("</svg><p>Mean force on each node; the longest is {:.3g} mN.</p>",
                            1e3 * largest);
 }
@@ -116,8 +116,8 @@ std::string FormatResidualPlots(const Diagnosis& diagnosis, const Recording& rec
   const ResidualPattern &before = diagnosis.residual_before, &after = diagnosis.residual_after;
   const bool both = !diagnosis.effects.empty();
   const auto curves = [&](auto curve_of) {
-    std::vector<ForceCurve> of_both{curve_of(before, kBefore)};
-    if (both) of_both.push_back(curve_of(after, kAfter));
+    std::vector<ForceCurve> of_both{curve_of(before, kBeforeColour)};
+    if (both) of_both.push_back(curve_of(after, kAfterColour));
     return of_both;
   };
   const auto binned = [&](BinnedMeans ResidualPattern::*means) {
@@ -134,6 +134,13 @@ std::string FormatResidualPlots(const Diagnosis& diagnosis, const Recording& rec
                   return Series(pattern.over_time, 1 / recording.fps, 0.5, colour);
                 }),
                 noise);
+  std::vector<ForceCurve> axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::VectorXd component = after.net.row(axis);
+    axes.push_back(
+        Series({component.begin(), component.end()}, 1 / recording.fps, 0.5, kAxisColours[axis]));
+  }
+  page += ForcePlot("still missing, of all nodes together: x red, y green, z blue", "s", axes, 0);
   page += ForcePlot("of all nodes together, by frequency", "Hz",
                     curves([&](const ResidualPattern& pattern, const char* colour) {
                       return Series(pattern.spectrum, pattern.frequency_step, 1, colour);

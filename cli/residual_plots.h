@@ -9,8 +9,12 @@
 
 namespace physpring {
 
+// Of curves, here and elsewhere on the page.
+inline constexpr char kBeforeColour[] = "#c33", kAfterColour[] = "#25c";
+
 // The mean force on each node as an arrow, and plots of the force along the body, over time, by
-// frequency, against the speed and against the stretch. `recording`: the one they were found on.
+// frequency, in direction, against the speed and against the stretch. `recording`: the one they
+// were found on.
 std::string FormatResidualPlots(const Diagnosis& diagnosis, const Recording& recording);
 
 }  // namespace physpring
