@@ -14,7 +14,9 @@
 
 #include "cli/commands.h"
 #include "cli/diagnosis_checkpoint.h"
-#include "cli/diagnosis_report.h"
+#include "cli/diagnosis_json.h"
+#include "cli/diagnosis_page.h"
+#include "cli/diagnosis_text.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/diagnosis_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/diagnosis_text.h"
+#include "twin/effects/effect_json.h"
+#include "twin/effects/registry.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// null where there is nothing to average over
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json Pair(const TrackPair& track) {
+  return {{"fit", Number(track.fit)}, {"heldout", Number(track.held)}};
+}
+
+// Names and parameters, and how well each parameter is known: a number or, where it has several
+// values, a list, as in the parameters themselves.
+Json EffectList(const Diagnosis& diagnosis) {
+  Json list = Json::parse(EffectsToJson(diagnosis.effects));
+  std::size_t i = 0;
+  for (std::size_t n = 0; n < diagnosis.effects.size(); ++n) {
+    Json errors = Json::object(), shared = Json::object();
+    for (const EffectParameter& parameter : GetEffect(diagnosis.effects[n].name).parameters()) {
+      Json of_error = Json::array(), of_shared = Json::array();
+      for (int k = 0; k < parameter.count && i < diagnosis.certainty.size(); ++k, ++i) {
+        of_error.push_back(Number(diagnosis.certainty[i].error));
+        of_shared.push_back(Number(diagnosis.certainty[i].shared));
+      }
+      errors[parameter.key] = parameter.count == 1 && !of_error.empty() ? of_error[0] : of_error;
+      shared[parameter.key] = parameter.count == 1 && !of_shared.empty() ? of_shared[0] : of_shared;
+    }
+    list[n]["standard_errors"] = errors;
+    list[n]["shared"] = shared;
+  }
+  return list;
+}
+
+Json Direction(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
+
+Json Vectors(const Points& vectors) {
+  Json list = Json::array();
+  for (const auto& vector : vectors.colwise()) list.push_back(Direction(vector));
+  return list;
+}
+
+Json UnexplainedJson(const Diagnosis& diagnosis) {
+  if (!diagnosis.unexplained) return nullptr;
+  const Unexplained& left = *diagnosis.unexplained;
+  return {{"track", left.track},
+          {"particle", left.particle},
+          {"position", Direction(left.position)},
+          {"from_s", left.first_time},
+          {"to_s", left.last_time},
+          {"direction", Direction(left.direction)},
+          {"steadiness", left.steadiness}};
+}
+
+Json BinnedJson(const BinnedMeans& means) {
+  return {{"x", means.x}, {"force_n", means.y}, {"standard_error_n", means.error}};
+}
+
+Json ResidualJson(const ResidualPattern& pattern) {
+  return {{"rms_n", pattern.root_mean_square},
+          {"noise_n", pattern.noise},
+          {"left_m", pattern.left},
+          {"constant", pattern.constant},
+          {"acceleration_m_per_s2", Direction(pattern.acceleration)},
+          {"with_velocity", pattern.with_velocity},
+          {"with_stretch", pattern.with_stretch},
+          {"over_time_n", pattern.over_time},
+          {"net_n", Vectors(pattern.net)},
+          {"frequency_step_hz", pattern.frequency_step},
+          {"spectrum_n", pattern.spectrum},
+          {"along_body", BinnedJson(pattern.along_body)},
+          {"against_speed", BinnedJson(pattern.against_speed)},
+          {"against_stretch", BinnedJson(pattern.against_stretch)}};
+}
+
+}  // namespace
+
+std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
+  Json candidates = Json::array();
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
+    candidates.push_back(
+        {{"name", candidate.name},
+         {"score", candidate.score},
+         {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)}});
+  }
+  const Json report = {
+      {"recordings", {{"fit", diagnosis.fitted}, {"heldout", diagnosis.judged}}},
+      {"noise_floor", diagnosis.noise_floor},
+      {"before", Pair(diagnosis.before)},
+      {"effects", EffectList(diagnosis)},
+      {"after", Pair(diagnosis.after)},
+      {"gain",
+       {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
+      {"candidates", candidates},
+      {"confounded", Confounded(diagnosis)},
+      {"unexplained", UnexplainedJson(diagnosis)},
+      {"residual_force",
+       {{"before", ResidualJson(diagnosis.residual_before)},
+        {"after", ResidualJson(diagnosis.residual_after)}}}};
+  return report.dump(1) + "\n";
+}
+
+}  // namespace physpring

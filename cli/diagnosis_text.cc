@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/diagnosis_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "twin/effects/registry.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kSteady = 0.7;  // a direction that turns by a third of a circle has 0.83
+
+// "a, b", or `none`.
+std::string Join(const std::vector<std::string>& names, const char* none) {
+  return names.empty() ? none : fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::vector<std::string> Confounded(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
+    if (diagnosis.effects.empty() || candidate.name == diagnosis.effects[0].name) continue;
+    if (candidate.alike) names.push_back(candidate.name);
+  }
+  return names;
+}
+
+std::string InMillimetres(double metres) {
+  return std::isfinite(metres) ? fmt::format("{:.2f} mm", 1e3 * metres) : "no data";
+}
+
+std::string DescribeGain(const BootstrapResult& gain) {
+  return fmt::format("{:.2f} mm less, 95 % interval {:.2f} to {:.2f}", 1e3 * gain.mean,
+                     1e3 * gain.low, 1e3 * gain.high);
+}
+
+std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect) {
+  std::size_t first = 0;
+  for (std::size_t n = 0; n < effect; ++n) {
+    first += static_cast<std::size_t>(diagnosis.effects[n].values.size());
+  }
+  const EffectValues& values = diagnosis.effects[effect];
+  std::string text;
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : GetEffect(values.name).parameters()) {
+    text += (text.empty() ? "" : ", ") + parameter.key;
+    for (int n = 0; n < parameter.count; ++n, ++i) {
+      text += fmt::format(" {:.3g}", values.values[i]);
+      const std::size_t at = first + static_cast<std::size_t>(i);
+      if (at >= diagnosis.certainty.size()) continue;
+      text += fmt::format(" ± {:.2g}", 1.96 * diagnosis.certainty[at].error);
+      if (diagnosis.certainty[at].shared > 0.95) text += " (hardly told from other parameters)";
+    }
+  }
+  return text;
+}
+
+std::string DescribeConfounded(const Diagnosis& diagnosis) {
+  const std::vector<std::string> names = Confounded(diagnosis);
+  return names.empty() ? "" : "as good on these recordings: " + Join(names, "");
+}
+
+std::string Verdict(const Diagnosis& diagnosis) {
+  if (diagnosis.effects.empty() && !diagnosis.unexplained) return "nothing is missing";
+  std::string verdict;
+  for (const EffectValues& effect : diagnosis.effects) {
+    verdict += (verdict.empty() ? "the model lacks " : ", ") + effect.name;
+  }
+  if (!diagnosis.unexplained) return verdict;
+  const Unexplained& left = *diagnosis.unexplained;
+  return fmt::format(
+      "{}{} above the noise are unexplained: a force, largest on particle {}, mostly from {:.2f} "
+      "to {:.2f} s, then towards ({:.2f}, {:.2f}, {:.2f}), which {}",
+      verdict.empty() ? "" : verdict + "; ", InMillimetres(left.track), left.particle,
+      left.first_time, left.last_time, left.direction[0], left.direction[1], left.direction[2],
+      left.steadiness > kSteady ? "stays" : "turns");
+}
+
+std::string DescribeResidual(const Diagnosis& diagnosis) {
+  const ResidualPattern &before = diagnosis.residual_before, &after = diagnosis.residual_after;
+  std::string text =
+      fmt::format("missing force on a node: {:.3g} mN", 1e3 * before.root_mean_square);
+  if (!diagnosis.effects.empty()) {
+    text += fmt::format(" before, {:.3g} mN after", 1e3 * after.root_mean_square);
+  }
+  return text + fmt::format(
+                    " (noise makes {:.2g}){}: {:.0f} % of its square one acceleration, cosine with "
+                    "the velocity {:.2f}, with the stretch {:.2f}",
+                    1e3 * before.noise, diagnosis.effects.empty() ? "" : "; before",
+                    100 * before.constant, before.with_velocity, before.with_stretch);
+}
+
+std::string DescribeRecordings(const Diagnosis& diagnosis) {
+  return fmt::format("fitted to {}; judged by {}", Join(diagnosis.fitted, "nothing"),
+                     Join(diagnosis.judged, "frames that were not fitted"));
+}
+
+std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
+  std::string text = DescribeRecordings(diagnosis) + "\n";
+  text += fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
+  text += fmt::format("before: fit {}, held out {}\n", InMillimetres(diagnosis.before.fit),
+                      InMillimetres(diagnosis.before.held));
+  for (const EffectCandidate& candidate : diagnosis.candidates) {
+    if (!candidate.refit) continue;
+    text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
+                        candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
+                        DescribeGain(candidate.gain), candidate.gain.p);
+  }
+  for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
+    text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
+                        DescribeParameters(diagnosis, i));
+  }
+  const std::string confounded = DescribeConfounded(diagnosis);
+  if (!confounded.empty()) text += confounded + "\n";
+  text += fmt::format("after: fit {}, held out {}\n", InMillimetres(diagnosis.after.fit),
+                      InMillimetres(diagnosis.after.held));
+  return text + DescribeResidual(diagnosis) + "\n" + Verdict(diagnosis) + "\n";
+}
+
+}  // namespace physpring
