@@ -140,7 +140,7 @@ void AddDiagnoseCommand(CLI::App& app) {
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
   command
       ->add_option("recordings", arguments->recordings,
-                   "recordings, or folders with a dataset.json (their `fit` ones); of many, four "
+                   "recordings, or folders with a dataset.json (their `fit` ones); of many, some "
                    "are fitted")
       ->required()
       ->type_name("REC.npz|DIR");
@@ -152,7 +152,7 @@ void AddDiagnoseCommand(CLI::App& app) {
       ->type_name("DIR");
   command
       ->add_option("--heldout", arguments->held_out,
-                   "recordings to judge by (of many, four); without them whole runs, of fewer than "
+                   "recordings to judge by (of many, some); without them whole runs, of fewer than "
                    "four the future frames, or blocks of frames")
       ->type_name("REC.npz|DIR");
   command->add_option("--json", arguments->json, "write report.json here, too")

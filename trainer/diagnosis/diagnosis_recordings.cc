@@ -1,26 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/diagnosis/diagnosis_recordings.h"
 
+#include <algorithm>
+
 #include "trainer/held_back.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kMostRecordings = 4;  // to fit, and to judge by
+constexpr int kMostRecordings = 4, kEnoughFrames = 1000;  // to fit, and to judge by
+
+// Some of them, spread evenly.
+std::vector<Recording> Some(const std::vector<Recording>& recordings) {
+  int longest = 1;
+  for (const Recording& recording : recordings) {
+    longest = std::max(longest, recording.frame_count());
+  }
+  return SpreadEvenly(recordings, std::clamp(kEnoughFrames / longest, 1, kMostRecordings));
+}
 
 }  // namespace
 
 DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out) {
   if (!held_out.empty()) {
-    return {SpreadEvenly(data.recordings, kMostRecordings),
-            SpreadEvenly(held_out, kMostRecordings)};
+    return {Some(data.recordings), Some(held_out)};
   }
   const std::vector<bool> is_held_out = HeldBackRuns(data);
   DiagnosisRecordings all;
   for (std::size_t i = 0; i < data.recordings.size(); ++i) {
     (is_held_out[i] ? all.held_out : all.fit).push_back(data.recordings[i]);
   }
-  return {SpreadEvenly(all.fit, kMostRecordings), SpreadEvenly(all.held_out, kMostRecordings)};
+  return {Some(all.fit), Some(all.held_out)};
 }
 
 }  // namespace physpring

@@ -55,5 +55,15 @@ TEST(DiagnosisRecordings, TakesAFewOfMany) {
   EXPECT_EQ(Names(chosen.held_out), (Strings{"2", "6", "10", "14"}));
 }
 
+TEST(DiagnosisRecordings, TakesFewerLongOnes) {
+  FitData data = Runs({0, 1, 2, 3, 4, 5, 6, 7});
+  for (Recording& recording : data.recordings) recording.points.resize(499);
+  const DiagnosisRecordings chosen = ChooseRecordings(data, {});
+  EXPECT_EQ(Names(chosen.fit), (Strings{"1", "5"}));
+  EXPECT_EQ(Names(chosen.held_out), (Strings{"2", "6"}));
+  for (Recording& recording : data.recordings) recording.points.resize(5000);
+  EXPECT_EQ(ChooseRecordings(data, {}).fit.size(), 1);
+}
+
 }  // namespace
 }  // namespace physpring
