@@ -43,6 +43,16 @@ struct Outputs {
   std::string report, page, twin, checkpoint;
 };
 
+// Throws Error if the recording to judge by is one of those to fit, or a copy.
+void ExpectNotFitted(const Recording& judged, const std::string& path,
+                     const std::vector<Recording>& fit) {
+  for (const Recording& recording : fit) {
+    if (recording.hash != judged.hash) continue;
+    throw Error(fmt::format("{}: is among the recordings to fit, too, as {}; it cannot judge them",
+                            path, recording.name));
+  }
+}
+
 // Before the work: makes the folder.
 Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<RecordingEntry>& fit,
                     const std::vector<RecordingEntry>& held_out) {
@@ -108,7 +118,10 @@ void Run(const DiagnoseArguments& arguments) {
   const auto held_out = ListRecordings(arguments.held_out, Role::kHeldout);
   const FitData data = ReadFitData(fit);
   std::vector<Recording> judged;
-  for (const RecordingEntry& entry : held_out) judged.push_back(ReadRecording(entry.path));
+  for (const RecordingEntry& entry : held_out) {
+    judged.push_back(ReadRecording(entry.path));
+    ExpectNotFitted(judged.back(), entry.path, data.recordings);
+  }
   const DiagnosisRecordings chosen = ChooseRecordings(data, judged);
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen.fit,

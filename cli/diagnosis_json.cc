@@ -26,18 +26,22 @@ Json EffectList(const Diagnosis& diagnosis) {
   Json list = Json::parse(EffectsToJson(diagnosis.effects));
   std::size_t i = 0;
   for (std::size_t n = 0; n < diagnosis.effects.size(); ++n) {
-    Json errors = Json::object(), shared = Json::object();
+    Json errors = Json::object(), shared = Json::object(), unknown = Json::object();
     for (const EffectParameter& parameter : GetEffect(diagnosis.effects[n].name).parameters()) {
-      Json of_error = Json::array(), of_shared = Json::array();
+      Json of_error = Json::array(), of_shared = Json::array(), of_unknown = Json::array();
       for (int k = 0; k < parameter.count && i < diagnosis.certainty.size(); ++k, ++i) {
         of_error.push_back(Number(diagnosis.certainty[i].error));
         of_shared.push_back(Number(diagnosis.certainty[i].shared));
+        of_unknown.push_back(Number(diagnosis.certainty[i].unknown));
       }
-      errors[parameter.key] = parameter.count == 1 && !of_error.empty() ? of_error[0] : of_error;
-      shared[parameter.key] = parameter.count == 1 && !of_shared.empty() ? of_shared[0] : of_shared;
+      const bool one = parameter.count == 1 && !of_error.empty();
+      errors[parameter.key] = one ? of_error[0] : of_error;
+      shared[parameter.key] = one ? of_shared[0] : of_shared;
+      unknown[parameter.key] = one ? of_unknown[0] : of_unknown;
     }
     list[n]["standard_errors"] = errors;
     list[n]["shared"] = shared;
+    list[n]["unknown"] = unknown;
   }
   return list;
 }

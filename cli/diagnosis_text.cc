@@ -53,7 +53,11 @@ std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect) {
       const std::size_t at = first + static_cast<std::size_t>(i);
       if (at >= diagnosis.certainty.size()) continue;
       text += fmt::format(" ± {:.2g}", 1.96 * diagnosis.certainty[at].error);
-      if (diagnosis.certainty[at].shared > 0.95) text += " (hardly told from other parameters)";
+      if (diagnosis.certainty[at].unknown > 0.5) {
+        text += " (not told by the recordings)";
+      } else if (diagnosis.certainty[at].shared > 0.95) {
+        text += " (hardly told from other parameters)";
+      }
     }
   }
   return text;
@@ -102,7 +106,7 @@ std::string DescribeRecordings(const Diagnosis& diagnosis) {
 std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   std::string text = DescribeRecordings(diagnosis) + "\n";
   text += fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
-  text += fmt::format("before: fit {}, held out {}\n", InMillimetres(diagnosis.before.fit),
+  text += fmt::format("before, refitted without new effects: fit {}, held out {}\n", InMillimetres(diagnosis.before.fit),
                       InMillimetres(diagnosis.before.held));
   for (const EffectCandidate& candidate : diagnosis.candidates) {
     if (!candidate.refit) continue;

@@ -6,6 +6,8 @@
 
 #include "cli/info_text.h"
 #include "twin/cone_name.h"
+#include "twin/effects/effect_json.h"
+#include "twin/effects/registry.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -56,6 +58,17 @@ std::string DescribeTraining(const Twin& twin) {
   return text;
 }
 
+// "drag_kg_per_m 0.01, wind_x_m_per_s 2, ..."
+std::string DescribeValues(const EffectValues& effect) {
+  std::string text;
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
+    text += (text.empty() ? "" : ", ") + parameter.key;
+    for (int n = 0; n < parameter.count; ++n) text += fmt::format(" {:.4g}", effect.values[i++]);
+  }
+  return text;
+}
+
 std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
   const SpringMassSystem& system = level.system;
   const double stable = ComputeStabilityBound(system).timestep;
@@ -79,6 +92,9 @@ std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
                             contact.collision_distance, contact.object_restitution,
                             contact.object_friction)
               : "particles do not collide\n";
+  for (const EffectValues& effect : system.effects) {
+    text += fmt::format("  effect {}: {}\n", effect.name, DescribeValues(effect));
+  }
   return text;
 }
 
@@ -102,6 +118,7 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
                      {"object_restitution", system.contact.object_restitution},
                      {"object_friction", system.contact.object_friction},
                      {"collision_distance_m", system.contact.collision_distance}};
+  json["effects"] = Json::parse(EffectsToJson(system.effects));
   return json;
 }
 

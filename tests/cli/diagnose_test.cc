@@ -60,6 +60,18 @@ TEST_F(Diagnose, FailsBeforeTheWorkWhereItCannotWrite) {
   EXPECT_TRUE(FailsWith(Run(output_, output_ + "/report.json"), "two outputs have this name"));
 }
 
+TEST_F(Diagnose, IsNotJudgedByWhatItFits) {
+  const std::string copy = folder_.File("copy.npz");
+  WriteFileAtomically(copy, ReadFile(swing_));
+  for (const std::string& judged : {swing_, copy}) {
+    const ProgramResult result =
+        RunProgram({"diagnose", twin_, held_, swing_, "--heldout", judged, "-o", output_});
+    EXPECT_TRUE(FailsWith(result, judged + ": is among the recordings to fit, too, as swing"))
+        << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(output_));
+  }
+}
+
 // A twin that was trained on the motion of a body that weighs more on one side.
 class DiagnoseAnew : public Diagnose {
  protected:

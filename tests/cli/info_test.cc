@@ -78,6 +78,19 @@ TEST_F(Info, TellsWhatIsInATwin) {
   EXPECT_GT(level["stable_timestep_s"], 1e-4);
 }
 
+TEST_F(Info, NamesTheEffectsOfATwin) {
+  Twin twin = SmallTwin(1);
+  twin.levels[0].system.effects = {{"gravity_direction", Eigen::Vector2d(0.125, -0.5)}};
+  WriteTwin(twin, folder_.File("tilted.twin.npz"));
+  const Json json = InfoToJson(folder_.File("tilted.twin.npz"));
+  EXPECT_EQ(json["levels"][0]["effects"][0]["name"], "gravity_direction");
+  EXPECT_EQ(json["levels"][0]["effects"][0]["parameters"]["tilt_y_rad"], -0.5);
+  const ProgramResult result = RunProgram({"info", folder_.File("tilted.twin.npz")});
+  EXPECT_NE(result.output.find("effect gravity_direction: tilt_x_rad 0.125, tilt_y_rad -0.5\n"),
+            std::string::npos)
+      << result.output;
+}
+
 TEST_F(Info, FailsInOneLineOnOtherFiles) {
   const std::string path = folder_.File("file.npz");
   EXPECT_TRUE(FailsWith(RunProgram({"info", path}), path));

@@ -62,18 +62,27 @@ std::ptrdiff_t EffectValueCount(const std::vector<EffectValues>& effects) {
 
 // The twin with the fit's system at level 0, and the new effects at all levels.
 Twin TwinWith(Twin twin, const EffectFit& fit, const std::vector<EffectValues>& effects,
-              const std::vector<Recording>& recordings) {
+              const std::vector<SplitRecording>& splits) {
   twin.training_state.clear();
   for (TwinLevel& level : twin.levels) {
     level.system.effects.insert(level.system.effects.end(), effects.begin(), effects.end());
   }
   TwinLevel& dense = twin.levels[0];
   dense.system = fit.system;
-  dense.substeps_per_second = DiagnosisRate(dense.system, recordings[0].fps);
+  dense.substeps_per_second = DiagnosisRate(dense.system, twin.fps);
   twin.controller_velocity = fit.controller_velocity;
-  for (const Recording& recording : recordings) {
-    if (TrainedOnThis(twin, recording)) continue;
-    twin.trained_on.push_back({recording.name, recording.hash, recording.train_frames});
+  for (const SplitRecording& split : splits) {
+    const Recording& recording = *split.recording;
+    const int fitted = split.last(Use::kFit);
+    if (fitted == 0) continue;
+    const auto known =
+        std::find_if(twin.trained_on.begin(), twin.trained_on.end(),
+                     [&](const TrainedOn& trained) { return trained.hash == recording.hash; });
+    if (known == twin.trained_on.end()) {
+      twin.trained_on.push_back({recording.name, recording.hash, fitted});
+    } else {
+      known->train_frames = std::max(known->train_frames, fitted);
+    }
   }
   return twin;
 }
@@ -132,7 +141,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     result.unexplained = FindUnexplained(
         result.residual_after, accepted.track.held - result.noise_floor, recordings[0].fps);
   }
-  result.twin = TwinWith(twin, accepted, result.effects, recordings);
+  result.twin = TwinWith(twin, accepted, result.effects, splits);
   return result;
 }
 

@@ -21,6 +21,19 @@ Eigen::VectorXd ValuesOf(const SpringMassSystem& system) {
   return values;
 }
 
+// Of the gradients of stretches of rows, which go on in time, scaled to the sum over all of them.
+Eigen::MatrixXd GradientScatter(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& r) {
+  constexpr Eigen::Index kStretches = 20;
+  Eigen::MatrixXd gradients(jacobian.cols(), kStretches);
+  for (Eigen::Index i = 0; i < kStretches; ++i) {
+    const Eigen::Index first = i * r.size() / kStretches, last = (i + 1) * r.size() / kStretches;
+    gradients.col(i) =
+        jacobian.middleRows(first, last - first).transpose() * r.segment(first, last - first);
+  }
+  gradients.colwise() -= gradients.rowwise().mean().eval();
+  return gradients * gradients.transpose() * (static_cast<double>(kStretches) / (kStretches - 1));
+}
+
 }  // namespace
 
 std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const EffectFit& fit) {
@@ -41,6 +54,9 @@ std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const Effe
   Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
   normal.diagonal().array() += kDiagnosisPrecision;
   const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  Eigen::MatrixXd scatter = GradientScatter(jacobian, *r) / (variance * variance);
+  scatter.diagonal().array() += kDiagnosisPrecision;
+  const Eigen::MatrixXd robust = covariance * scatter * covariance;
 
   const Eigen::VectorXd values = ValuesOf(problem.model().Apply(fit.x));
   std::vector<ValueCertainty> certainty;
@@ -52,8 +68,9 @@ std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const Effe
     const double slope =
         std::abs(ValuesOf(problem.model().Apply(moved))[i - own] - values[i - own]) /
         fitting.difference();
-    certainty.push_back({slope * std::sqrt(std::max(0.0, covariance(i, i))),
-                         std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0)});
+    certainty.push_back({slope * std::sqrt(std::max({0.0, covariance(i, i), robust(i, i)})),
+                         std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0),
+                         std::clamp(kDiagnosisPrecision * covariance(i, i), 0.0, 1.0)});
   }
   return certainty;
 }

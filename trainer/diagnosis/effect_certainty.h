@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well recordings determine an effect's parameters, from the curvature of the misfit: with
 // J = d r / d x of the body's common factors and all effects' parameters together,
-//   N = J^T J / variance + prior,   covariance C = N^-1.
+//   N = J^T J / variance + prior,   C = N^-1.
 // The variance is that of the residuals left, so that what the model still gets wrong widens the
-// intervals; that neighbouring residuals are alike is not counted, so they are still too narrow.
+// intervals. Neighbouring residuals are alike, so C alone is too narrow: the gradients g of the
+// misfit of 20 stretches of time say by how much (the cluster-robust or sandwich covariance: Liang
+// and Zeger, Biometrika 73, 1986),
+//   C = N^-1 (sum of (g - mean g)(g - mean g)^T + prior) N^-1,
+// and the larger of both counts.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_CERTAINTY_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_CERTAINTY_H_
 
@@ -18,6 +22,8 @@ struct ValueCertainty {
   // The part of what the value does to the motion that other parameters could do as well (its
   // squared multiple correlation): near 1, the recordings cannot tell them apart.
   double shared = 0;
+  // The part of its variance that is its prior's: near 1, the recordings say nothing about it.
+  double unknown = 0;
 };
 
 // Of the effects' values, one effect after the other, at a fit's common factors; empty if it cannot

@@ -107,6 +107,11 @@ TEST(Diagnosis, FindsTiltedGravity) {
   // 800 points with noise of 0.3 mm leave less than a tenth of the angle open
   EXPECT_NEAR(diagnosis.effects[0].values[0], kTilt, 0.1 * kTilt);
   EXPECT_NEAR(diagnosis.effects[0].values[1], 0, 0.1 * kTilt);
+  ASSERT_EQ(diagnosis.certainty.size(), 2U);
+  EXPECT_LT(diagnosis.certainty[0].error, 0.05 * kTilt);
+  EXPECT_LT(std::abs(diagnosis.effects[0].values[0] - kTilt), 4 * diagnosis.certainty[0].error);
+  EXPECT_LT(diagnosis.certainty[0].unknown, 0.01);
+  EXPECT_EQ(diagnosis.twin.trained_on[0].train_frames, kFrames);  // all of them were fitted
   EXPECT_LT(diagnosis.after.held, 1.5 * diagnosis.noise_floor);
   EXPECT_GT(diagnosis.before.held, 3 * diagnosis.after.held);
   EXPECT_FALSE(diagnosis.unexplained);
