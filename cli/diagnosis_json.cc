@@ -46,6 +46,10 @@ Json EffectList(const Diagnosis& diagnosis) {
   return list;
 }
 
+Json ParametersOf(const EffectValues& effect) {
+  return Json::parse(EffectsToJson({effect}))[0]["parameters"];
+}
+
 Json Direction(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
 
 Json Vectors(const Points& vectors) {
@@ -95,7 +99,8 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
     candidates.push_back(
         {{"name", candidate.name},
          {"score", candidate.score},
-         {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)}});
+         {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)},
+         {"parameters", candidate.refit ? ParametersOf(candidate.values) : Json(nullptr)}});
   }
   const Json report = {
       {"recordings", {{"fit", diagnosis.fitted}, {"heldout", diagnosis.judged}}},
