@@ -114,7 +114,7 @@ EffectFit With(const EffectFit& fit, const EffectTrace& trace) {
   return with;
 }
 
-// Laws of the springs and of bending change bodies so much that these begin anew.
+// Laws of the springs change bodies so much that these begin anew.
 std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<EffectFit> fits;
@@ -127,9 +127,7 @@ std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<E
   };
   for (const Effect* effect : effects) {
     for (const Eigen::VectorXd& start : effect->Starts(fitting.Model(first).Apply(first.x))) {
-      if (effect->MakeTension(start) || effect->bends()) {
-        add(first.body, {effect->name(), start});
-      }
+      if (effect->MakeTension(start)) add(first.body, {effect->name(), start});
     }
   }
   Halve(fitting, kLawCuts, stage.Part(0, 0.5), kWithLaw, &fits);
