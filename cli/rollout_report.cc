@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct LevelResult {
+struct LevelOutcome {
   int episodes = 0, successes = 0, problems = 0, frames = 0;
   EpisodeSeconds seconds;
   double rate() const { return episodes == 0 ? 0 : static_cast<double>(successes) / episodes; }
@@ -35,7 +35,7 @@ struct PolicyComparison {
 using Verdicts = std::map<int, std::map<int, bool>>;  // by level, then episode
 
 struct PolicyResult {
-  std::map<int, LevelResult> levels;
+  std::map<int, LevelOutcome> levels;
   std::vector<Comparison> comparisons;  // with the lowest level
 };
 
@@ -74,7 +74,7 @@ std::vector<PolicyComparison> ComparePolicies(const std::vector<JudgedPolicy>& p
 PolicyResult Count(const JudgedPolicy& policy) {
   PolicyResult result;
   for (const EpisodeSummary& episode : policy.episodes) {
-    LevelResult& level = result.levels[episode.level];
+    LevelOutcome& level = result.levels[episode.level];
     ++level.episodes;
     level.successes += episode.success ? 1 : 0;
     level.problems += episode.problem.empty() ? 0 : 1;
@@ -156,7 +156,7 @@ std::vector<Ranking> Rank(const std::vector<PolicyResult>& results) {
 
 Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-Json ToJson(int number, const LevelResult& level) {
+Json ToJson(int number, const LevelOutcome& level) {
   const Interval interval = WilsonInterval(level.successes, level.episodes);
   const EpisodeSeconds& s = level.seconds;
   const double n = std::max(1, level.episodes);

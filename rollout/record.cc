@@ -81,7 +81,7 @@ void FindGround(const mjModel& model, const mjData& data, const SoftPoints& soft
 }
 
 // One scene in motion.
-struct Run {
+struct RecordingRun {
   mjModel* model;
   const MocapPath& path;
   const SoftPoints& soft;
@@ -126,7 +126,8 @@ struct Run {
 };
 
 // The state at time 0: rest, start, velocities, interior, ground.
-void RecordStart(const Points& rest, const std::string& where, Run* run, Recording* recording) {
+void RecordStart(const Points& rest, const std::string& where, RecordingRun* run,
+                 Recording* recording) {
   run->PlaceAt(0);
   recording->start = run->AllPositions();
   recording->rest = rest;
@@ -138,7 +139,7 @@ void RecordStart(const Points& rest, const std::string& where, Run* run, Recordi
 
 // Steps through the scene and records exact points and controllers. With a lag, a frame's
 // controllers are those of so many steps later.
-void RecordMotion(long frames, const std::string& where, Run* run, Recording* recording) {
+void RecordMotion(long frames, const std::string& where, RecordingRun* run, Recording* recording) {
   // the reference configuration, then the first keyframe's
   run->ComputeKinematics();
   const Points rest = run->AllPositions();
@@ -191,7 +192,7 @@ Recording RecordScene(const std::string& scene_path, const RecordOptions& option
 
   FitTimestep(options.fps, model.get());
   const DataPtr data = MakeData(*model);
-  Run run{model.get(), path, soft, effects, data.get()};
+  RecordingRun run{model.get(), path, soft, effects, data.get()};
   run.lag = std::lround(effects.latency() / model->opt.timestep);
   RecordMotion(frames, scene_path, &run, &recording);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double kLeastStiffness = 0.1;                          // part of it that a drift leaves
 constexpr double kCore = 0.03;                                   // m, of the attraction
 constexpr double kCircle = 0.12, kCircleRate = 8, kBelow = 0.1;  // its way: m, rad/s, m
-constexpr char kAnchor[] = "undeclared anchor";
+constexpr char kAnchorName[] = "undeclared anchor";
 
 Eigen::Map<Eigen::Vector3d> At(mjtNum* values, int i) {
   return Eigen::Map<Eigen::Vector3d>(values + 3 * i);
@@ -189,10 +189,10 @@ void UndeclaredEffects::AddEdgeTendons(mjSpec* spec) const {
 void UndeclaredEffects::AddTether(mjSpec* spec) const {
   const int place = Place("tether");
   mjsSite* anchor = mjs_addSite(mjs_findBody(spec, "world"), nullptr);
-  mjs_setName(anchor->element, kAnchor);
+  mjs_setName(anchor->element, kAnchorName);
   At(anchor->pos, 0) = Vector("tether.anchor", "m", reference_.col(place));
-  mjsTendon* tendon =
-      AddTendon(spec, "tether", SiteOn(particles_[static_cast<std::size_t>(place)], spec), kAnchor);
+  mjsTendon* tendon = AddTendon(
+      spec, "tether", SiteOn(particles_[static_cast<std::size_t>(place)], spec), kAnchorName);
   tendon->stiffness[0] = Value("tether.stiffness_n_per_m");
   tendon->damping[0] = Value("tether.damping_n_s_per_m");
   tendon->springlength[0] = tendon->springlength[1] = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kNeighbours = 8;
 
-bool IsSeen(const Points& points, Eigen::Index i) { return points.col(i).allFinite(); }
+bool IsKnown(const Points& points, Eigen::Index i) { return points.col(i).allFinite(); }
 
 // All columns (points, interior, controllers) in `frame`; interior particles are not seen there.
 Points ShapeInFrame(const Recording& recording, std::size_t frame) {
@@ -26,7 +26,7 @@ Points ShapeInFrame(const Recording& recording, std::size_t frame) {
 std::vector<Eigen::Index> NearestKnown(const Points& shape, const Points& start, Eigen::Index i) {
   std::vector<Eigen::Index> known;
   for (Eigen::Index j = 0; j < start.cols(); ++j) {
-    if (IsSeen(shape, j) && IsSeen(start, j)) known.push_back(j);
+    if (IsKnown(shape, j) && IsKnown(start, j)) known.push_back(j);
   }
   const auto distance_squared = [&](Eigen::Index j) {
     return (shape.col(j) - shape.col(i)).squaredNorm();
@@ -52,7 +52,7 @@ Eigen::Vector3d MoveWithNeighbours(const Points& shape, const Points& start, Eig
 
 std::size_t FirstFrameThatSees(const Recording& recording, Eigen::Index point) {
   std::size_t frame = 0;
-  while (!IsSeen(recording.points.at(frame), point)) ++frame;
+  while (!IsKnown(recording.points.at(frame), point)) ++frame;
   return frame;
 }
 
@@ -62,7 +62,7 @@ std::vector<int> PlaceUnseenPoints(Recording& recording) {
   const Points known = recording.start;  // placed points are no neighbours of the next ones
   std::vector<int> placed;
   for (int i = 0; i < recording.point_count(); ++i) {
-    if (IsSeen(known, i)) continue;
+    if (IsKnown(known, i)) continue;
     const Points shape = recording.rest_given
                              ? recording.rest
                              : ShapeInFrame(recording, FirstFrameThatSees(recording, i));

@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostRecordings = 4, kEnoughFrames = 1000;  // to fit, and to judge by
+constexpr int kMostOnASide = 4, kEnoughFrames = 1000;  // to fit, and to judge by
 
 // Some of them, spread evenly.
 std::vector<Recording> Some(const std::vector<Recording>& recordings) {
@@ -16,7 +16,7 @@ std::vector<Recording> Some(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     longest = std::max(longest, recording.frame_count());
   }
-  return SpreadEvenly(recordings, std::clamp(kEnoughFrames / longest, 1, kMostRecordings));
+  return SpreadEvenly(recordings, std::clamp(kEnoughFrames / longest, 1, kMostOnASide));
 }
 
 }  // namespace
