@@ -106,8 +106,8 @@ std::string DescribeRecordings(const Diagnosis& diagnosis) {
 std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   std::string text = DescribeRecordings(diagnosis) + "\n";
   text += fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
-  text += fmt::format("before, refitted without new effects: fit {}, held out {}\n", InMillimetres(diagnosis.before.fit),
-                      InMillimetres(diagnosis.before.held));
+  text += fmt::format("before, refitted without new effects: fit {}, held out {}\n",
+                      InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held));
   for (const EffectCandidate& candidate : diagnosis.candidates) {
     if (!candidate.refit) continue;
     text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
