@@ -12,9 +12,8 @@ namespace {
 constexpr double kNoSpring = std::numeric_limits<double>::infinity();
 constexpr double kPatch = 0.5;  // of the distance between neighbours
 
-}  // namespace
-
-double PointRadius(const SpringMassSystem& system) {
+// Half the mean length of the shortest springs of the nodes.
+double PatchRadius(const SpringMassSystem& system) {
   const int nodes = system.node_count();
   Eigen::VectorXd shortest = Eigen::VectorXd::Constant(nodes, kNoSpring);
   for (const auto& [a, b] : system.springs) {
@@ -31,6 +30,8 @@ double PointRadius(const SpringMassSystem& system) {
   }
   return kPatch * sum / std::max(1, count);
 }
+
+}  // namespace
 
 Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system) {
   Eigen::VectorXd along = system.order;
@@ -62,32 +63,27 @@ Eigen::MatrixXd KnotWeights(const Eigen::VectorXd& coordinate, int knots) {
   return weights;
 }
 
-Eigen::VectorXd PatchWeights(const SpringMassSystem& system, const Patch& patch) {
-  const double radius = PointRadius(system),
-               squared = radius * radius + patch.spread * patch.spread;
+Eigen::VectorXd PatchWeights(const SpringMassSystem& system, const Eigen::Vector3d& place) {
+  const double r = PatchRadius(system);
   const auto nodes = system.position.leftCols(system.node_count());
   Eigen::VectorXd exponent =
-      -(nodes.colwise() - patch.place).colwise().squaredNorm().transpose() / (2 * squared);
+      -(nodes.colwise() - place).colwise().squaredNorm().transpose() / (2 * r * r);
   exponent.array() -= exponent.maxCoeff();  // so that a place far away does not underflow
   const Eigen::VectorXd weights = exponent.array().exp();
   return weights / weights.sum();
 }
 
-Patch PatchWeightsAdjoint(const SpringMassSystem& system, const Patch& patch,
-                          const Eigen::VectorXd& weights, const Eigen::VectorXd& weights_bar) {
-  const double radius = PointRadius(system),
-               squared = radius * radius + patch.spread * patch.spread;
-  Patch bar;
+void PatchWeightsAdjoint(const SpringMassSystem& system, const Eigen::Vector3d& place,
+                         const Eigen::VectorXd& weights, const Eigen::VectorXd& weights_bar,
+                         Eigen::Ref<Eigen::Vector3d> place_bar) {
+  const double r = PatchRadius(system);
   // forward: w = exp(q) / sum exp(q):  q_bar_i = w_i (w_bar_i - w . w_bar)
   const double mean = weights.dot(weights_bar);
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     const double q_bar = weights[i] * (weights_bar[i] - mean);
-    // forward: q = -|x - p|^2 / 2 (R^2 + s^2)
-    const Eigen::Vector3d away = system.position.col(i) - patch.place;
-    bar.place += q_bar / squared * away;
-    bar.spread += q_bar * away.squaredNorm() / (squared * squared) * patch.spread;
+    // forward: q = -|x - p|^2 / 2 r^2
+    place_bar += q_bar / (r * r) * (system.position.col(i) - place);
   }
-  return bar;
 }
 
 std::vector<int> SpreadNodes(const SpringMassSystem& system, int count) {

@@ -17,24 +17,15 @@ Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system);
 // values.
 Eigen::MatrixXd KnotWeights(const Eigen::VectorXd& coordinate, int knots);
 
-// Where a thing is attached, in the reference configuration: around a place, over a radius. Also
-// the derivatives of a loss with respect to them.
-struct Patch {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m
-  double spread = 0;                                // m; 0: at a point
-};
+// Of each node: how much a thing at `place` (m, in the reference configuration) is attached to it:
+// exp(-|position - place|^2 / 2 r^2), scaled to a sum of 1; r is half the mean distance of a node
+// to its nearest one along a spring, so that a thing on a node is on this one for the most part.
+Eigen::VectorXd PatchWeights(const SpringMassSystem& system, const Eigen::Vector3d& place);
 
-// Half the mean distance of a node to its nearest one along a spring, m.
-double PointRadius(const SpringMassSystem& system);
-
-// Of each node: how much the thing is attached to it: exp(-|position - place|^2 / 2 r^2), scaled to
-// a sum of 1; r^2 = PointRadius^2 + spread^2, so that a thing at a node's place is on this node for
-// the most part.
-Eigen::VectorXd PatchWeights(const SpringMassSystem& system, const Patch& patch);
-
-// From d loss / d weights, at the weights that belong to the patch.
-Patch PatchWeightsAdjoint(const SpringMassSystem& system, const Patch& patch,
-                          const Eigen::VectorXd& weights, const Eigen::VectorXd& weights_bar);
+// Adds to place_bar, given d loss / d weights, at the weights that belong to `place`.
+void PatchWeightsAdjoint(const SpringMassSystem& system, const Eigen::Vector3d& place,
+                         const Eigen::VectorXd& weights, const Eigen::VectorXd& weights_bar,
+                         Eigen::Ref<Eigen::Vector3d> place_bar);
 
 // About `count` nodes spread over the reference configuration, each far from the others.
 std::vector<int> SpreadNodes(const SpringMassSystem& system, int count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masses other than declared: a payload added to a patch of the body (body_coordinate.h), and a
-// smooth redistribution along the body that keeps the total:
+// Masses other than declared: a payload added at a place of the body (its patch, see
+// body_coordinate.h), and a smooth redistribution along the body that keeps the total:
 //   m_i' = M m_i (1 + f(s_i)) / sum_j m_j (1 + f(s_j)) + payload w_i
 #include "twin/effects/body_coordinate.h"
 #include "twin/effects/effect.h"
@@ -9,8 +9,6 @@ namespace physpring {
 namespace {
 
 constexpr int kMassKnots = 4;
-
-Patch PayloadPatch(const Eigen::VectorXd& values) { return {values.segment<3>(1), values[4]}; }
 
 // 1 + f of each node.
 Eigen::VectorXd Field(const SpringMassSystem& system, const Eigen::VectorXd& values) {
@@ -26,22 +24,16 @@ class MassDistribution : public Effect {
             {"place_x_m", -100, 100, 0.05},
             {"place_y_m", -100, 100, 0.05},
             {"place_z_m", -100, 100, 0.05},
-            {"spread_m", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"relative_density_change", -0.9, 10, 0.3, kMassKnots}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const override {
     constexpr int kPlaces = 10;
-    const double radius = PointRadius(system);
-    struct Payload {
-      double part, spread;  // of the body's mass, and of the radius of a point
-    };
     std::vector<Eigen::VectorXd> starts;
     for (int node : SpreadNodes(system, kPlaces)) {
-      for (const Payload& payload : {Payload{0.1, 0.3}, Payload{0.5, 0.3}, Payload{0.5, 4}}) {
-        Eigen::VectorXd start = Eigen::VectorXd::Zero(5 + kMassKnots);
-        start[0] = payload.part * system.mass.sum();
+      for (double part : {0.1, 0.5}) {
+        Eigen::VectorXd start = Eigen::VectorXd::Zero(4 + kMassKnots);
+        start[0] = part * system.mass.sum();
         start.segment<3>(1) = system.position.col(node);
-        start[4] = payload.spread * radius;
         starts.push_back(start);
       }
     }
@@ -55,7 +47,7 @@ class MassDistribution : public Effect {
       const Eigen::VectorXd weighted = system.mass.cwiseProduct(Field(system, values));
       system.mass = total / weighted.sum() * weighted;
     }
-    if (values[0] != 0) system.mass += values[0] * PatchWeights(system, PayloadPatch(values));
+    if (values[0] != 0) system.mass += values[0] * PatchWeights(system, values.segment<3>(1));
   }
 
   void ChangeAdjoint(const Eigen::VectorXd& values, const Setting& before, SystemGradient* gradient,
@@ -63,12 +55,10 @@ class MassDistribution : public Effect {
     const SpringMassSystem& system = before.system;
     const Eigen::VectorXd mass_bar = gradient->mass;
     // forward: m' = .. + payload w
-    const Patch patch = PayloadPatch(values);
-    const Eigen::VectorXd weights = PatchWeights(system, patch);
+    const Eigen::VectorXd weights = PatchWeights(system, values.segment<3>(1));
     (*values_bar)[0] += mass_bar.dot(weights);
-    const Patch patch_bar = PatchWeightsAdjoint(system, patch, weights, values[0] * mass_bar);
-    values_bar->segment<3>(1) += patch_bar.place;
-    (*values_bar)[4] += patch_bar.spread;
+    PatchWeightsAdjoint(system, values.segment<3>(1), weights, values[0] * mass_bar,
+                        values_bar->segment<3>(1));
     // forward: m' = M y / sum y, y = m (1 + f)
     const Eigen::VectorXd field = Field(system, values);
     const Eigen::VectorXd y = system.mass.cwiseProduct(field);

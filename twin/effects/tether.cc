@@ -11,7 +11,7 @@ namespace {
 class TetherForce : public EffectForce {
  public:
   TetherForce(const SpringMassSystem& system, const Eigen::VectorXd& values)
-      : system_(system), values_(values), weights_(PatchWeights(system, {values.segment<3>(2)})) {}
+      : system_(system), values_(values), weights_(PatchWeights(system, values.segment<3>(2))) {}
 
   void Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd>, Points* force) const override {
     force->leftCols(weights_.size()) += Pull(instant) * weights_.transpose();
@@ -33,8 +33,8 @@ class TetherForce : public EffectForce {
     gradient->v.leftCols(nodes) -= values_[1] * pull_bar * weights_.transpose();
     weights_bar -=
         values_[0] * (x.transpose() * pull_bar) + values_[1] * (v.transpose() * pull_bar);
-    gradient->values.segment<3>(2) +=
-        PatchWeightsAdjoint(system_, {values_.segment<3>(2)}, weights_, weights_bar).place;
+    PatchWeightsAdjoint(system_, values_.segment<3>(2), weights_, weights_bar,
+                        gradient->values.segment<3>(2));
   }
 
  private:
@@ -77,7 +77,7 @@ class Tether : public Effect {
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     // K w w^T is at most K w_i sum(w) at each node: a spring to a controller, or to any other node
-    const Eigen::VectorXd weights = PatchWeights(*bound, {values.segment<3>(2)});
+    const Eigen::VectorXd weights = PatchWeights(*bound, values.segment<3>(2));
     Eigen::Index node = 0;
     weights.maxCoeff(&node);
     const Eigen::Index e = bound->spring_count() + 1;
@@ -94,7 +94,7 @@ class Tether : public Effect {
                     {},
                     {},
                     "each node of the patch has a spring of its own to the anchor"};
-    const Eigen::VectorXd weights = PatchWeights(system, {values.segment<3>(2)});
+    const Eigen::VectorXd weights = PatchWeights(system, values.segment<3>(2));
     for (int i = 0; i < static_cast<int>(weights.size()); ++i) {
       if (weights[i] < 1e-3) continue;
       mjcf.anchors.push_back({i, values.tail<3>(), values[0] * weights[i], values[1] * weights[i]});
