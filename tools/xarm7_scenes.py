@@ -49,7 +49,7 @@ def only_seen(body):
 
 
 def meshes(root, folder, prefix):
-    """The <asset> of a robosuite file, its files found from anywhere, its names with a prefix."""
+    """The <asset> of a robosuite file, its files found from here, its names with a prefix."""
     asset = ET.Element('asset')
     for item in root.find('asset'):
         item = copy.deepcopy(item)
@@ -156,7 +156,6 @@ def make_task(task, robosuite, folder):
         return pathlib.Path(os.path.relpath(path, folder))
 
     scene = ET.parse(task / 'scene.xml').getroot()
-    meshes_at = from_folder(robosuite)
     with_hand = scene
     for include in scene.iter('include'):
         included = task / include.get('file')
@@ -166,7 +165,7 @@ def make_task(task, robosuite, folder):
             include.set('file', 'gripper.xml')
     with_arm(with_hand, robosuite)
     for mesh in with_hand.iter('mesh'):
-        mesh.set('file', str(meshes_at / os.path.relpath(mesh.get('file'), robosuite)))
+        mesh.set('file', str(from_folder(mesh.get('file'))))
     if with_hand is not scene:
         write(with_hand, folder / 'gripper.xml')
     write(scene, folder / 'scene.xml')

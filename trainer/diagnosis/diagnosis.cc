@@ -21,10 +21,16 @@ constexpr double kUnexplained = 2.5;  // times the noise floor: something is lef
 // Of the work, as the journal tells it: the loop over effects, then the residual forces.
 constexpr WorkShare kLoopShare{0, 0.97}, kResidualShare{0.97, 1};
 
-bool TrainedOnThis(const Twin& twin, const Recording& recording) {
-  return std::any_of(twin.trained_on.begin(), twin.trained_on.end(), [&](const TrainedOn& trained) {
+// What the twin says of its training on the recording; end() if it was not trained on it.
+template <class List>  // std::vector<TrainedOn>, const or not
+auto FindTraining(List& trained_on, const Recording& recording) {
+  return std::find_if(trained_on.begin(), trained_on.end(), [&](const TrainedOn& trained) {
     return !trained.hash.empty() && trained.hash == recording.hash;
   });
+}
+
+bool TrainedOnThis(const Twin& twin, const Recording& recording) {
+  return FindTraining(twin.trained_on, recording) != twin.trained_on.end();
 }
 
 std::vector<SplitRecording> SplitAll(const std::vector<Recording>& recordings,
@@ -75,9 +81,7 @@ Twin TwinWith(Twin twin, const EffectFit& fit, const std::vector<EffectValues>& 
     const Recording& recording = *split.recording;
     const int fitted = split.last(Use::kFit);
     if (fitted == 0) continue;
-    const auto known =
-        std::find_if(twin.trained_on.begin(), twin.trained_on.end(),
-                     [&](const TrainedOn& trained) { return trained.hash == recording.hash; });
+    const auto known = FindTraining(twin.trained_on, recording);
     if (known == twin.trained_on.end()) {
       twin.trained_on.push_back({recording.name, recording.hash, fitted});
     } else {
