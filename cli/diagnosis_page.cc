@@ -93,8 +93,10 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
   page += diagnosis.effects.empty() ? "<li>none</li></ul>" : "</ul>";
   if (!diagnosis.effects.empty()) {
     const std::string confounded = DescribeConfounded(diagnosis);
-    page += fmt::format("<p>Behind ±: half a 95 % interval from the curvature of the misfit{}.</p>",
-                        confounded.empty() ? "" : "; " + confounded);
+    page += fmt::format(
+        "<p>Behind ±: half a 95 % interval, from the misfit's curvature and how alike neighbouring "
+        "residuals are{}.</p>",
+        confounded.empty() ? "" : "; " + confounded);
   }
   page += fmt::format("<h2>Forces that are missing</h2><p>{}.</p>{}", DescribeResidual(diagnosis),
                       FormatResidualPlots(diagnosis, recording));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trainer/particle_mass.h"
 #include "trainer/spring_radius.h"
 #include "trainer/start_system.h"
 #include "twin/stability.h"
@@ -95,6 +96,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
     topology.controller_max_neighbours *= kMostPerWanted;
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
+  system.mass = ParticleMasses(recording);
   system.contact.cone = candidate.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   system.effects = candidate.effects;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "trainer/diagnosis/effect_loop.h"
+#include "trainer/diagnosis/effect_problem.h"
 #include "trainer/diagnosis/fit_residual.h"
 #include "trainer/diagnosis/noise_floor.h"
 #include "trainer/diagnosis/trained_fit.h"

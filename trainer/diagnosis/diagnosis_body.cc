@@ -23,13 +23,12 @@ constexpr double kSolid = 0.03;
 
 constexpr double kStart = 8;  // sub-steps a frame; the fit looks for a better start itself
 
-// Springs of equal axial stiffness and of their reference lengths, equal dashpots, equal masses.
+// Springs of equal axial stiffness and of their reference lengths, equal dashpots.
 SpringMassSystem MakeAlike(const SpringMassSystem& system) {
   SpringMassSystem alike = system;
   alike.rest_length = SpringLengths(system.springs, system.position, system.order);
   alike.stiffness = alike.rest_length.cwiseInverse();
   alike.dashpot.setOnes();
-  alike.mass.setConstant(system.mass.sum() / system.node_count());
   return alike;
 }
 

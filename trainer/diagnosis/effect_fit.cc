@@ -25,6 +25,7 @@ constexpr int kFollowedSpringSteps = 3;
 
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
 constexpr double kMostRate = 10000, kMostCommonRate = 5000;
+constexpr double kTrustedRoom = 1.25;  // above what a trusted body takes as it came
 
 // Calls `work` for each fit and takes out those for which it returns false.
 template <class Work>
@@ -74,10 +75,10 @@ GaussNewtonOptions Prior(const EffectModel& model) {
 
 }  // namespace
 
-void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* fit) {
-  fit->held = TrackOf(recordings, fit->predicted, SplitRecording::Use::kHeld);
-  fit->track = {Mean(TrackOf(recordings, fit->predicted, SplitRecording::Use::kFit)),
-                Mean(fit->held)};
+void ScorePrediction(const std::vector<SplitRecording>& recordings,
+                     const std::vector<std::vector<Points>>& predicted, EffectFit* fit) {
+  fit->held = TrackOf(recordings, predicted, SplitRecording::Use::kHeld);
+  fit->track = {Mean(TrackOf(recordings, predicted, SplitRecording::Use::kFit)), Mean(fit->held)};
 }
 
 PieceKey KeyOf(const std::string& kind, const EffectFit& fit) {
@@ -116,8 +117,7 @@ EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>
     fit.start_substeps = substeps;
     const EffectModel model = Model(fit);
     fit.x = Eigen::VectorXd::Zero(model.size());
-    EffectProblem problem =
-        MakeProblem(model, bodies_[body].controller_velocity, kObserverGains[0], 1);
+    EffectProblem problem = MakeProblem(model, bodies_[body], kObserverGains[0], 1);
     if (!problem.FixSubsteps(fit.x)) continue;
     const auto r = problem.Residuals(fit.x);
     if (!r || r->squaredNorm() >= best.misfit) continue;
@@ -135,17 +135,21 @@ EffectModel EffectFitting::Model(const EffectFit& fit) const {
 }
 
 EffectProblem EffectFitting::Problem(const EffectFit& fit, double gain) const {
-  return MakeProblem(Model(fit), bodies_[fit.body].controller_velocity, gain, 1);
+  return MakeProblem(Model(fit), bodies_[fit.body], gain, 1);
 }
 
-EffectProblem EffectFitting::MakeProblem(EffectModel model, bool controller_velocity, double gain,
+EffectProblem EffectFitting::MakeProblem(EffectModel model, const DiagnosisBody& body, double gain,
                                          int threads) const {
   EffectProblem::Options options;
   options.threads = threads;
   options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
   options.least_rate = kLeastDiagnosisRate;
   options.most_rate = options.limit_dashpots ? kMostCommonRate : kMostRate;
-  options.controller_velocity = controller_velocity;
+  if (body.trusted) {
+    const double own = DiagnosisRate(body.base, recordings_[0].recording->fps);
+    options.most_rate = std::max(options.most_rate, kTrustedRoom * own);
+  }
+  options.controller_velocity = body.controller_velocity;
   // an observer is for finding the way, which needs fewer digits
   options.single_precision = gain > 0;
   options.difference = DirectionDifference(*recordings_[0].recording, options.single_precision);
@@ -185,12 +189,11 @@ void EffectFitting::Descend(double gain, int steps, std::vector<EffectFit>* fits
 bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
                             EffectFit* fit) const {
   if (!problem->FixSubsteps(x)) return false;
-  auto predicted = problem->Predict(x);
+  const auto predicted = problem->Predict(x);
   if (!predicted) return false;
   fit->system = problem->SystemAt(x);
   fit->controller_velocity = bodies_[fit->body].controller_velocity;
-  fit->predicted = std::move(*predicted);
-  ScorePrediction(recordings_, fit);
+  ScorePrediction(recordings_, *predicted, fit);
   return true;
 }
 
@@ -207,13 +210,12 @@ void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
   SpringMassSystem base = fit->system;
   base.effects.clear();
   const EffectModel model(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects);
-  const bool velocity = bodies_[fit->body].controller_velocity;
   const GaussNewtonOptions prior = Prior(model);
   GaussNewtonState state;
   state.x = Eigen::VectorXd::Zero(model.size());
   for (const bool followed : {true, false}) {
     const double gain = followed ? kFollowedGain : 0;
-    EffectProblem problem = MakeProblem(model, velocity, gain, threads_);
+    EffectProblem problem = MakeProblem(model, bodies_[fit->body], gain, threads_);
     state.damping = 1e-3;
     state.converged = false;
     int slow = 0;
@@ -228,7 +230,7 @@ void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
       if (state.converged || slow == kMostSlowSteps) break;
     }
   }
-  EffectProblem problem = MakeProblem(model, velocity, 0, threads_);
+  EffectProblem problem = MakeProblem(model, bodies_[fit->body], 0, threads_);
   EffectFit refitted = *fit;
   if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
 }

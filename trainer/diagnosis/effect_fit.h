@@ -32,13 +32,13 @@ struct EffectFit {
   // From Judge and RefitSprings.
   SpringMassSystem system;
   bool controller_velocity = true;  // whether dashpots feel it
-  std::vector<std::vector<Points>> predicted;
   FrameTrack held;
   TrackPair track{};
 };
 
-// Sets `held` and `track` from what the fit predicted.
-void ScorePrediction(const std::vector<SplitRecording>& recordings, EffectFit* fit);
+// Sets `held` and `track` from the particles' predicted positions, those of each recording.
+void ScorePrediction(const std::vector<SplitRecording>& recordings,
+                     const std::vector<std::vector<Points>>& predicted, EffectFit* fit);
 
 // What a piece of work with this fit depends on, besides the fit's x.
 PieceKey KeyOf(const std::string& kind, const EffectFit& fit);
@@ -80,7 +80,7 @@ class EffectFitting {
  private:
   SpringMassSystem Base(std::size_t body, double start_substeps) const;
   bool Predict(EffectProblem* problem, const Eigen::VectorXd& x, EffectFit* fit) const;
-  EffectProblem MakeProblem(EffectModel model, bool controller_velocity, double gain,
+  EffectProblem MakeProblem(EffectModel model, const DiagnosisBody& body, double gain,
                             int threads) const;
   bool DescendOne(double gain, int steps, EffectFit* fit) const;
 

@@ -29,6 +29,11 @@ void ForEachSeen(const SplitRecording& split, Use use, Visit visit) {
 
 }  // namespace
 
+int DiagnosisRate(const SpringMassSystem& system, double fps) {
+  const int substeps = StableSubsteps(ComputeStabilityBound(system), 1 / fps, kStepSafety);
+  return static_cast<int>(std::ceil(std::max(substeps * fps, kLeastDiagnosisRate)));
+}
+
 EffectProblem::EffectProblem(EffectModel model, const std::vector<SplitRecording>& recordings,
                              const Options& options)
     : model_(std::move(model)),

@@ -25,6 +25,9 @@ using FrameTrack = std::vector<double>;
 // or an effect is taken for a remedy because it makes the body stiffer and so the step finer.
 constexpr double kLeastDiagnosisRate = 2000;
 
+// Sub-steps a second that a diagnosed system takes on recordings of that rate.
+int DiagnosisRate(const SpringMassSystem& system, double fps);
+
 class EffectProblem : public LeastSquares {
  public:
   struct Options {

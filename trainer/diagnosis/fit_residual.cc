@@ -6,7 +6,6 @@
 
 #include "trainer/fit_model.h"
 #include "trainer/parallel.h"
-#include "twin/stability.h"
 
 namespace physpring {
 namespace {
@@ -41,11 +40,6 @@ ResidualForce Unpack(const Eigen::VectorXd& packed, int nodes) {
 }
 
 }  // namespace
-
-int DiagnosisRate(const SpringMassSystem& system, double fps) {
-  const int substeps = StableSubsteps(ComputeStabilityBound(system), 1 / fps, kStepSafety);
-  return static_cast<int>(std::ceil(std::max(substeps * fps, kLeastDiagnosisRate)));
-}
 
 std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
                                          const std::vector<const EffectFit*>& fits,

@@ -10,9 +10,6 @@
 
 namespace physpring {
 
-// Sub-steps a second that a diagnosed system takes on recordings of that rate.
-int DiagnosisRate(const SpringMassSystem& system, double fps);
-
 // `deviation`: of the measurements, m, a coordinate.
 std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
                                          const std::vector<const EffectFit*>& fits,

@@ -13,14 +13,15 @@ std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitReco
   fit.trained = true;
   fit.controller_velocity = twin.controller_velocity;
   fit.system = twin.levels[0].system;
+  std::vector<std::vector<Points>> predicted;
   try {
-    for (std::size_t i = 0; i < recordings.size(); ++i) {
-      fit.predicted[i] = Predict(twin, 0, *recordings[i].recording, {});
+    for (const SplitRecording& split : recordings) {
+      predicted.push_back(Predict(twin, 0, *split.recording, {}));
     }
   } catch (const Error&) {
     return {};
   }
-  ScorePrediction(recordings, &fit);
+  ScorePrediction(recordings, predicted, &fit);
   return fit;
 }
 

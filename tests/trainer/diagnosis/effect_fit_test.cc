@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/swung_rope.h"
 #include "trainer/start_system.h"
 
@@ -69,8 +71,20 @@ TEST(EffectFitting, JudgesWithoutAnObserver) {
   same = fits[0];
   ASSERT_TRUE(fitting.Judge(&fits[0]));
   ASSERT_TRUE(judged.Judge(&same));
-  EXPECT_EQ(fits[0].predicted, same.predicted);
+  EXPECT_EQ(fits[0].track.fit, same.track.fit);
   EXPECT_NE(fits[0].track.held, same.track.held);
+}
+
+TEST(EffectFitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
+  const Recording recording = SofterRope();
+  SpringMassSystem stiff = MakeStartSystem(recording, {});
+  stiff.stiffness *= 1e6;
+  stiff.dashpot *= 30;
+  ASSERT_GT(DiagnosisRate(stiff, recording.fps), 10000);
+  const EffectFitting fitting({{stiff, true, true, "rope"}}, {HoldOutFrames(recording)}, 1);
+  const EffectFit fit = fitting.Begin(0, {});
+  ASSERT_TRUE(std::isfinite(fit.misfit));
+  EXPECT_EQ(fitting.Problem(fit, 0).SystemAt(fit.x).dashpot, stiff.dashpot);
 }
 
 }  // namespace
