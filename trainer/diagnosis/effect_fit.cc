@@ -15,7 +15,9 @@
 namespace physpring {
 namespace {
 
-constexpr double kTrustedScale = 0.05;  // of common factors that hardly move
+// Of common factors that hardly move (their logarithms): what a training on other recordings found
+// may be wrong by a quarter, but not be undone by an effect that does the opposite.
+constexpr EffectModel::OwnRange kTrusted{0.05, 0.25};
 constexpr int kSpringConjugateGradients = 20;
 constexpr double kEffectScale = 30;  // of an effect's parameters beside the springs' own
 
@@ -131,7 +133,7 @@ EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>
 EffectModel EffectFitting::Model(const EffectFit& fit) const {
   const DiagnosisBody& body = bodies_[fit.body];
   return EffectModel(CommonFactors(Base(fit.body, fit.start_substeps), *recordings_[0].recording),
-                     body.trusted ? kTrustedScale : 1, fit.start);
+                     body.trusted ? kTrusted : EffectModel::OwnRange{}, fit.start);
 }
 
 EffectProblem EffectFitting::Problem(const EffectFit& fit, double gain) const {
@@ -209,7 +211,7 @@ void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
 void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
   SpringMassSystem base = fit->system;
   base.effects.clear();
-  const EffectModel model(SpringFactors(base, *recordings_[0].recording), 1, fit->system.effects);
+  const EffectModel model(SpringFactors(base, *recordings_[0].recording), {}, fit->system.effects);
   const GaussNewtonOptions prior = Prior(model);
   GaussNewtonState state;
   state.x = Eigen::VectorXd::Zero(model.size());

@@ -8,8 +8,8 @@
 
 namespace physpring {
 
-EffectModel::EffectModel(Parameters own, double scale, std::vector<EffectValues> start)
-    : own_(std::move(own)), scale_(scale), start_(std::move(start)) {
+EffectModel::EffectModel(Parameters own, OwnRange range, std::vector<EffectValues> start)
+    : own_(std::move(own)), range_(range), start_(std::move(start)) {
   for (const EffectValues& effect : start_) {
     for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
       const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
@@ -20,13 +20,21 @@ EffectModel::EffectModel(Parameters own, double scale, std::vector<EffectValues>
   effect_size_ = static_cast<int>(entries_.size());
 }
 
+Eigen::VectorXd EffectModel::OwnValues(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd values = range_.scale * x.head(own_.size());
+  if (std::isfinite(range_.limit)) {
+    values = range_.limit * (values / range_.limit).array().tanh();
+  }
+  return values;
+}
+
 double EffectModel::Value(const Entry& entry, double start, double x) {
   const double value = entry.logarithmic ? start * std::exp(x) : start + entry.scale * x;
   return std::clamp(value, entry.low, entry.high);
 }
 
 SpringMassSystem EffectModel::Apply(const Eigen::VectorXd& x) const {
-  SpringMassSystem system = own_.Apply(scale_ * x.head(own_.size()));
+  SpringMassSystem system = own_.Apply(OwnValues(x));
   system.effects = start_;
   std::size_t i = 0;
   for (EffectValues& effect : system.effects) {
@@ -41,7 +49,10 @@ SpringMassSystem EffectModel::Apply(const Eigen::VectorXd& x) const {
 Eigen::VectorXd EffectModel::Adjoint(const Eigen::VectorXd& x, const SpringMassSystem& system,
                                      const SystemGradient& gradient) const {
   Eigen::VectorXd bar(size());
-  bar.head(own_.size()) = scale_ * own_.Adjoint(system, gradient);
+  // forward: y = limit tanh(scale x / limit):  dy / dx = scale (1 - (y / limit)^2)
+  const Eigen::ArrayXd part = OwnValues(x).array() / range_.limit;
+  bar.head(own_.size()) =
+      range_.scale * (1 - part.square()) * own_.Adjoint(system, gradient).array();
   Eigen::Index i = own_.size();
   for (std::size_t n = 0; n < start_.size(); ++n) {
     for (Eigen::Index j = 0; j < start_[n].values.size(); ++j, ++i) {

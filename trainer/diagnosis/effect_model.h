@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a diagnosis moves: an unconstrained vector, and the map from it to a spring-mass system with
-// effects. First the model's own parameters (parameters.h, times `scale`), then the values of the
-// effects, one after the other:
+// effects. First the model's own parameters (parameters.h), then the values of the effects, one
+// after the other:
+//   own:          limit tanh(scale x / limit), or scale x without a limit
 //   even:         value = start + scale x, within the parameter's bounds
 //   logarithmic:  value = start exp(x), within the bounds
 // Zero is the base system with the effects at their start.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
 
+#include <limits>
 #include <vector>
 
 #include "trainer/levenberg_marquardt.h"
@@ -21,12 +23,16 @@ inline constexpr double kDiagnosisPrecision = LevenbergMarquardtOptions().precis
 
 class EffectModel {
  public:
+  struct OwnRange {
+    double scale = 1;
+    double limit = std::numeric_limits<double>::infinity();  // of what is handed to `own`
+  };
+
   // The base system of `own` must have no effects itself.
-  EffectModel(Parameters own, double scale, std::vector<EffectValues> start);
+  EffectModel(Parameters own, OwnRange range, std::vector<EffectValues> start);
 
   int size() const { return own_.size() + effect_size_; }
   const Parameters& own() const { return own_; }
-  double scale() const { return scale_; }
 
   SpringMassSystem Apply(const Eigen::VectorXd& x) const;
 
@@ -39,10 +45,11 @@ class EffectModel {
     double low, high, scale;
     bool logarithmic;
   };
+  Eigen::VectorXd OwnValues(const Eigen::VectorXd& x) const;
   static double Value(const Entry& entry, double start, double x);
 
   Parameters own_;
-  double scale_;
+  OwnRange range_;
   std::vector<EffectValues> start_;
   std::vector<Entry> entries_;  // of all effects
   int effect_size_;

@@ -31,25 +31,41 @@ double PatchRadius(const SpringMassSystem& system) {
   return kPatch * sum / std::max(1, count);
 }
 
+Points Centred(const SpringMassSystem& system) {
+  const Eigen::Vector3d mean = system.position.rowwise().mean();
+  return system.position.colwise() - mean;
+}
+
+Eigen::Vector3d LongestAxis(const Points& centred) {
+  const Eigen::Matrix3d spread = centred * centred.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  Eigen::Vector3d axis = axes.eigenvectors().col(2);
+  // its sign: the same on every machine
+  Eigen::Index largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  return axis[largest] < 0 ? -axis : axis;
+}
+
 }  // namespace
 
 Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system) {
   Eigen::VectorXd along = system.order;
   if (along.size() == 0) {
-    const Eigen::Vector3d mean = system.position.rowwise().mean();
-    const Points centred = system.position.colwise() - mean;
-    const Eigen::Matrix3d spread = centred * centred.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-    Eigen::Vector3d axis = axes.eigenvectors().col(2);
-    // its sign: the same on every machine
-    Eigen::Index largest = 0;
-    axis.cwiseAbs().maxCoeff(&largest);
-    if (axis[largest] < 0) axis = -axis;
-    along = centred.transpose() * axis;
+    const Points centred = Centred(system);
+    along = centred.transpose() * LongestAxis(centred);
   }
   const double low = along.minCoeff(), length = along.maxCoeff() - low;
   if (length <= 0) return Eigen::VectorXd::Zero(along.size());
   return (along.array() - low) / length;
+}
+
+Points PlaceAcross(const SpringMassSystem& system) {
+  Points across = Points::Zero(3, system.position.cols());
+  if (system.order.size() > 0) return across;
+  const Points centred = Centred(system);
+  const Eigen::Vector3d axis = LongestAxis(centred);
+  across = centred - axis * (axis.transpose() * centred);
+  return across;
 }
 
 Eigen::MatrixXd KnotWeights(const Eigen::VectorXd& coordinate, int knots) {

@@ -13,6 +13,10 @@ namespace physpring {
 // Of each node and controller. All 0 for a body that is one point.
 Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system);
 
+// Of each node and controller: its place across the body, 3 x (nodes + controllers), m: seen from
+// the mean, without what lies along the longest principal axis. All 0 for a rod.
+Points PlaceAcross(const SpringMassSystem& system);
+
 // Row i: the weights of `knots` values in the field at coordinate[i]. A field is Knots(..) *
 // values.
 Eigen::MatrixXd KnotWeights(const Eigen::VectorXd& coordinate, int knots);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strain that the body has in its declared stress-free positions: rest lengths L (1 + f(s)), with f
-// piecewise linear along the body (body_coordinate.h), at the middle of each spring.
+// Strain that the body has in its declared stress-free positions: rest lengths L (1 + f(s) + g .
+// y), with f piecewise linear along the body and y the place across it (body_coordinate.h), at the
+// middle of each spring. The gradient g bends a body without stress: one of 1/m has a radius of 1
+// m.
 #include "twin/effects/body_coordinate.h"
 #include "twin/effects/effect.h"
 
@@ -9,38 +11,46 @@ namespace {
 
 constexpr int kLengthKnots = 5;
 
-// Row e: the weights of the knots in the field at spring e.
-Eigen::MatrixXd SpringKnots(const SpringMassSystem& system) {
+// Row e: the weights of all values in the strain of spring e.
+Eigen::MatrixXd SpringFields(const SpringMassSystem& system) {
   const Eigen::VectorXd along = BodyCoordinate(system);
+  const Points across = PlaceAcross(system);
   Eigen::VectorXd middle(system.spring_count());
+  Eigen::MatrixXd fields(system.spring_count(), kLengthKnots + 3);
   for (int e = 0; e < system.spring_count(); ++e) {
-    middle[e] = (along[system.springs[e][0]] + along[system.springs[e][1]]) / 2;
+    const auto [a, b] = system.springs[e];
+    middle[e] = (along[a] + along[b]) / 2;
+    fields.row(e).tail<3>() = (across.col(a) + across.col(b)) / 2;
   }
-  return KnotWeights(middle, kLengthKnots);
+  fields.leftCols(kLengthKnots) = KnotWeights(middle, kLengthKnots);
+  return fields;
 }
 
 class RestLength : public Effect {
  public:
   std::string name() const override { return "rest_length"; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"strain", -0.8, 4, 0.03, kLengthKnots}};
+    return {{"strain", -0.8, 4, 0.03, kLengthKnots},
+            {"strain_gradient_x_per_m", -100, 100, 1},
+            {"strain_gradient_y_per_m", -100, 100, 1},
+            {"strain_gradient_z_per_m", -100, 100, 1}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(kLengthKnots)};
+    return {Eigen::VectorXd::Zero(kLengthKnots + 3)};
   }
 
   void Change(const Eigen::VectorXd& values, Setting* setting) const override {
     if (values.isZero()) return;
     Eigen::VectorXd& length = setting->system.rest_length;
-    length += length.cwiseProduct(SpringKnots(setting->system) * values);
+    length += length.cwiseProduct(SpringFields(setting->system) * values);
   }
 
   void ChangeAdjoint(const Eigen::VectorXd& values, const Setting& before, SystemGradient* gradient,
                      Eigen::VectorXd* values_bar) const override {
-    const Eigen::MatrixXd knots = SpringKnots(before.system);
+    const Eigen::MatrixXd fields = SpringFields(before.system);
     *values_bar +=
-        knots.transpose() * gradient->rest_length.cwiseProduct(before.system.rest_length);
-    gradient->rest_length += gradient->rest_length.cwiseProduct(knots * values);
+        fields.transpose() * gradient->rest_length.cwiseProduct(before.system.rest_length);
+    gradient->rest_length += gradient->rest_length.cwiseProduct(fields * values);
   }
 
   EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {

@@ -11,10 +11,12 @@
 namespace physpring {
 namespace {
 
+constexpr double kLimit = 0.8;
+
 EffectModel MakeModel(const SpringMassSystem& base) {
   ParameterOptions own;
   own.spring_stiffness = own.spring_dashpot = false;
-  return EffectModel(Parameters(base, own), 0.5,
+  return EffectModel(Parameters(base, own), {0.5, kLimit},
                      {{"air_drag", Eigen::Vector4d(0.2, 1, 0, 0)},
                       {"tension_only", Eigen::VectorXd::Constant(1, 0.9)}});
 }
@@ -38,6 +40,18 @@ TEST(EffectModel, MovesEvenlyOrByFactorsWithinBounds) {
   EXPECT_EQ(system.effects[1].values[0], 1);                         // at most all is slack
 }
 
+TEST(EffectModel, MovesItsOwnParametersNoFartherThanTheLimit) {
+  const SpringMassSystem base = RandomSystem(25, 2, 1);
+  const EffectModel model = MakeModel(base);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
+  ASSERT_EQ(model.own().kind(0), Parameters::Kind::kGlobal);
+  x[0] = 1e-3;
+  const double first = model.Apply(x).stiffness[0] / base.stiffness[0];
+  EXPECT_NEAR(std::log(first), 0.5e-3, 1e-9);
+  x[0] = 100;
+  EXPECT_NEAR(model.Apply(x).stiffness[0], std::exp(kLimit) * base.stiffness[0], 1e-9);
+}
+
 // The adjoint J^T u and the differences J v of the whole problem: u . J v = J^T u . v.
 TEST(EffectModel, HasTheAdjointOfTheProblem) {
   Random random(2);
@@ -56,6 +70,7 @@ TEST(EffectModel, HasTheAdjointOfTheProblem) {
   split[0].use[3] = SplitRecording::Use::kHeld;
   EffectProblem problem(MakeModel(base), split, {});
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());
+  x.head(problem.model().own().size()).setConstant(0.7);
   x[x.size() - 1] = -1;  // away from the bound
   const auto r = problem.Linearise(x);
   ASSERT_TRUE(r);

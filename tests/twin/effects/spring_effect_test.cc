@@ -28,9 +28,9 @@ std::vector<KnownEffect> KnownEffects() {
   const auto stretch = [](const Moment& s) { return s.length - s.rest_length; };
   return {
       {{"viscoelastic", Eigen::Vector2d(0.5, 0.02)},
-       [](const Moment& s, double, double h, double* z) {
+       [=](const Moment& s, double, double h, double* z) {
          *z = (*z + h * s.rate) * std::exp(-h / 0.02);
-         return 0.5 * s.stiffness * *z;
+         return 0.5 * s.stiffness * (*z - stretch(s));
        }},
       {{"yield", Eigen::Vector2d(2e-3, 0.1)},
        [=](const Moment& s, double, double, double* p) {
