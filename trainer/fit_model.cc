@@ -56,9 +56,10 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
 }  // namespace
 
 std::string Candidate::Label() const {
-  return fmt::format("{} neighbours{}{}", neighbours,
+  return fmt::format("{} neighbours{}{}{}", neighbours,
                      controller_velocity ? "" : ", controllers without velocity",
-                     cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
+                     cone == FrictionCone::kElliptic ? "" : ", pyramidal friction",
+                     equal_masses ? ", equal masses" : "");
 }
 
 std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions& options) {
@@ -79,6 +80,9 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
     for (FrictionCone cone : cones) {
       for (bool velocity : velocities) {
         candidates.push_back({count, radius, velocity, cone, options.effects});
+        if (!WeighsByVolume(recording)) continue;
+        candidates.push_back(candidates.back());
+        candidates.back().equal_masses = true;
       }
     }
   }
@@ -96,7 +100,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
     topology.controller_max_neighbours *= kMostPerWanted;
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
-  system.mass = ParticleMasses(recording);
+  if (!candidate.equal_masses) system.mass = ParticleMasses(recording);
   system.contact.cone = candidate.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   system.effects = candidate.effects;
