@@ -56,10 +56,9 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
 }  // namespace
 
 std::string Candidate::Label() const {
-  return fmt::format("{} neighbours{}{}{}", neighbours,
+  return fmt::format("{} neighbours{}{}", neighbours,
                      controller_velocity ? "" : ", controllers without velocity",
-                     cone == FrictionCone::kElliptic ? "" : ", pyramidal friction",
-                     equal_masses ? ", equal masses" : "");
+                     cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
 }
 
 std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions& options) {
@@ -80,9 +79,6 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
     for (FrictionCone cone : cones) {
       for (bool velocity : velocities) {
         candidates.push_back({count, radius, velocity, cone, options.effects});
-        if (!WeighsByVolume(recording)) continue;
-        candidates.push_back(candidates.back());
-        candidates.back().equal_masses = true;
       }
     }
   }
@@ -100,7 +96,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
     topology.controller_max_neighbours *= kMostPerWanted;
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
-  if (!candidate.equal_masses) system.mass = ParticleMasses(recording);
+  system.mass = ParticleMasses(recording);
   system.contact.cone = candidate.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   system.effects = candidate.effects;

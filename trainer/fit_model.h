@@ -16,14 +16,13 @@
 namespace physpring {
 
 // One model: which particles are joined, whether dashpots feel the controllers' velocity, the cone
-// of friction, effects that are known, and the masses of a solid's particles.
+// of friction, and effects that are known.
 struct Candidate {
   int neighbours = 0;  // of an inner particle, about
   double radius = 0;   // m, that gives them (not used along rods)
   bool controller_velocity = true;
   FrictionCone cone = FrictionCone::kElliptic;
   std::vector<EffectValues> effects = {};
-  bool equal_masses = false;  // of a solid's particles, which otherwise weigh by volume
 
   std::string Label() const;
 };

@@ -30,9 +30,6 @@ constexpr int kRoundCount = static_cast<int>(kRounds.size());
 constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
-// Real solids weigh by volume. Finite-element bodies may not, but must show it: of two that predict
-// alike that one is taken.
-constexpr double kEqualMassesMalus = 1.15;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -171,7 +168,6 @@ void ModelChoice::FinishContender(const SpringMassSystem& system) {
   if (round_ == kRoundCount - 1) {  // bodies whose motions are chaotic do well only under it
     contender.score = 0.5 * (contender.score + TrackError(system, contender.model.candidate, 0));
   }
-  if (contender.model.candidate.equal_masses) contender.score *= kEqualMassesMalus;
   status_ = fmt::format("{}: {:.3f} mm on held-back frames", contender.model.candidate.Label(),
                         1e3 * contender.score);
   iteration_ = 0;

@@ -98,14 +98,10 @@ Eigen::VectorXd CellVolumes(const Points& particles) {
   return volumes;
 }
 
-bool WeighsByVolume(const Recording& recording) {
-  return recording.interior_count() > 0 && recording.order.size() == 0;
-}
-
 Eigen::VectorXd ParticleMasses(const Recording& recording) {
   const int count = recording.particle_count();
   Eigen::VectorXd masses = Eigen::VectorXd::Constant(count, recording.mass / count);
-  if (!WeighsByVolume(recording)) return masses;
+  if (recording.interior_count() == 0 || recording.order.size() > 0) return masses;
   const std::vector<Held> held = HeldParts(recording);
   Points body(3, count + static_cast<Eigen::Index>(held.size()));
   body.leftCols(count) = recording.rest.leftCols(count);

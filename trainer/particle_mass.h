@@ -13,11 +13,8 @@ namespace physpring {
 // corners stand for an eighth of a cell. Next to nothing in a plane.
 Eigen::VectorXd CellVolumes(const Points& particles);
 
-// Whether a recording's body is a solid: it has particles inside, and is no rod.
-bool WeighsByVolume(const Recording& recording);
-
 // Mass, kg, of each point and interior particle; their sum is the recording's mass. By volume for
-// solids, but never less than a part of the mean, since
+// solids (bodies with interior particles, not rods), but never less than a part of the mean, since
 // light particles need small sub-steps; for all other bodies alike. What a solid has around
 // controllers within it, as at a clamped face, goes to the particles nearest to them.
 Eigen::VectorXd ParticleMasses(const Recording& recording);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/swung_rope.h"
-#include "trainer/fit_model.h"
 
 namespace physpring {
 namespace {
@@ -81,22 +80,6 @@ TEST(ParticleMasses, OfOtherBodiesAreAlike) {
   const Recording rope = SwungRope(8, 2);
   EXPECT_NEAR(ParticleMasses(rope).minCoeff(), rope.mass / 8, 1e-15);
   EXPECT_EQ(ParticleMasses(rope).minCoeff(), ParticleMasses(rope).maxCoeff());
-}
-
-TEST(Candidates, OfASolidWeighByVolumeOrAlike) {
-  const Recording box = SolidBox();
-  TrainOptions options;
-  options.neighbours = {8};
-  options.controller_velocity = true;
-  options.cone = FrictionCone::kElliptic;
-  const std::vector<Candidate> candidates = Candidates(box, options);
-  ASSERT_EQ(candidates.size(), 2U);
-  const SpringMassSystem by_volume = StartSystem(box, candidates[0], 8);
-  const SpringMassSystem alike = StartSystem(box, candidates[1], 8);
-  EXPECT_EQ(by_volume.mass, ParticleMasses(box));
-  EXPECT_NEAR(alike.mass.minCoeff(), 0.3 / alike.mass.size(), 1e-15);
-  EXPECT_NE(candidates[0].Label(), candidates[1].Label());
-  EXPECT_EQ(Candidates(SwungRope(8, 2), options).size(), 1U);
 }
 
 }  // namespace
