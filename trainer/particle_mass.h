@@ -14,9 +14,10 @@ namespace physpring {
 Eigen::VectorXd CellVolumes(const Points& particles);
 
 // Mass, kg, of each point and interior particle; their sum is the recording's mass. By volume for
-// solids (bodies with interior particles, not rods), but never less than a part of the mean, since
-// light particles need small sub-steps; for all other bodies alike. What a solid has around
-// controllers within it, as at a clamped face, goes to the particles nearest to them.
+// solids most of whose particles are unseen (more interior particles than points, no rod), since
+// nothing else tells how those move; but never less than a part of the mean: light particles need
+// small sub-steps. What a solid has around controllers within it, as at a clamped face, goes to the
+// particles nearest to them. Alike for all other bodies.
 Eigen::VectorXd ParticleMasses(const Recording& recording);
 
 }  // namespace physpring

@@ -77,6 +77,13 @@ TEST(ParticleMasses, OfOtherBodiesAreAlike) {
   Recording box = SolidBox();
   box.order = Eigen::VectorXd::LinSpaced(box.rest.cols(), 0, 1);
   EXPECT_EQ(ParticleMasses(box).minCoeff(), ParticleMasses(box).maxCoeff());
+  const Recording seen = [] {
+    Recording all = SolidBox();
+    all.points.assign(2, all.rest.leftCols(40));
+    all.interior = all.rest.middleCols(40, 20);
+    return all;
+  }();
+  EXPECT_EQ(ParticleMasses(seen).minCoeff(), ParticleMasses(seen).maxCoeff());
   const Recording rope = SwungRope(8, 2);
   EXPECT_NEAR(ParticleMasses(rope).minCoeff(), rope.mass / 8, 1e-15);
   EXPECT_EQ(ParticleMasses(rope).minCoeff(), ParticleMasses(rope).maxCoeff());

@@ -56,7 +56,8 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   options.cone = own.base.contact.cone;
   const Recording shaped = WithShapeOf(own.base, recording);
   for (const Candidate& candidate : Candidates(shaped, options)) {
-    const SpringMassSystem system = StartSystem(shaped, candidate, kStart);
+    SpringMassSystem system = StartSystem(shaped, candidate, kStart);
+    system.mass = own.base.mass;
     const auto known = std::find_if(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
       return body.controller_velocity == candidate.controller_velocity &&
              body.base.springs == system.springs;
