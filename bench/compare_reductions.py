@@ -68,6 +68,8 @@ def train_and_judge(arguments, name, recording, judged, options):
     """Trains NAME.twin.npz, judges it on `judged`; the content of NAME.json."""
     twin = arguments.output / f"{name}.twin.npz"
     result = arguments.output / f"{name}.json"
+    if name in arguments.known:
+        return arguments.known[name]
     if not result.exists():
         start = time.monotonic()
         run([arguments.physpring, "train", recording, "-o", twin, "--resume", "--threads",
@@ -302,6 +304,9 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, metavar="DIR")
     parser.add_argument("--physpring", type=pathlib.Path,
                         default=pathlib.Path("build/release/physpring"))
+    parser.add_argument("--known", type=lambda path: json.loads(pathlib.Path(path).read_text()),
+                        default={}, metavar="FILE.json",
+                        help="results that are not to be made again, by name (bench/results/)")
     parser.add_argument("--methods", metavar="NAME[,NAME...]", type=methods_of,
                         default=[name for name in METHODS if name not in ABLATIONS],
                         help=f"of {', '.join(METHODS)}")
