@@ -69,6 +69,7 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
   std::vector<FrictionCone> cones = {FrictionCone::kElliptic};
   if (recording.ground) cones.push_back(FrictionCone::kPyramidal);
   if (options.cone) cones = {*options.cone};
+  const Eigen::VectorXd masses = ParticleMasses(recording);
   std::vector<Candidate> candidates;
   double last_radius = 0;
   for (int count : NeighbourCounts(recording, options)) {
@@ -78,7 +79,7 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
     last_radius = radius;
     for (FrictionCone cone : cones) {
       for (bool velocity : velocities) {
-        candidates.push_back({count, radius, velocity, cone, options.effects});
+        candidates.push_back({count, radius, velocity, cone, options.effects, masses});
       }
     }
   }
@@ -96,7 +97,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
     topology.controller_max_neighbours *= kMostPerWanted;
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
-  system.mass = ParticleMasses(recording);
+  if (candidate.mass.size() > 0) system.mass = candidate.mass;
   system.contact.cone = candidate.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   system.effects = candidate.effects;

@@ -23,6 +23,7 @@ struct Candidate {
   bool controller_velocity = true;
   FrictionCone cone = FrictionCone::kElliptic;
   std::vector<EffectValues> effects = {};
+  Eigen::VectorXd mass = {};  // kg, of each particle; empty: all alike
 
   std::string Label() const;
 };

@@ -65,12 +65,7 @@ struct Held {
 std::vector<Held> HeldParts(const Recording& recording) {
   const Points particles = recording.rest.leftCols(recording.particle_count());
   const NeighbourSearch search(particles);
-  std::vector<double> spacing;
-  for (int i = 0; i < particles.cols(); ++i) {
-    spacing.push_back(search.Nearest(particles.col(i), 2).back().distance);
-  }
-  std::nth_element(spacing.begin(), spacing.begin() + particles.cols() / 2, spacing.end());
-  const double reach = kWithin * spacing[static_cast<std::size_t>(particles.cols() / 2)];
+  const double reach = kWithin * MedianSpacing(particles);
   std::vector<Held> held;
   for (int i = 0; i < recording.controller_count(); ++i) {
     const Neighbour near = search.Nearest(recording.rest.col(particles.cols() + i), 1).front();

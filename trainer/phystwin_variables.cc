@@ -72,14 +72,7 @@ Eigen::VectorXd PhysTwinStart() {
 double PhysTwinLengthScale(const Recording& recording) {
   const Points particles = recording.rest.leftCols(recording.particle_count());
   if (particles.cols() < 2) return 1;
-  const NeighbourSearch search(particles);
-  std::vector<double> spacing;
-  for (int i = 0; i < particles.cols(); ++i) {
-    spacing.push_back(search.Nearest(particles.col(i), 2)[1].distance);
-  }
-  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
-  std::nth_element(spacing.begin(), middle, spacing.end());
-  return std::max(1.0, *middle / kPhysTwinSpacing);
+  return std::max(1.0, MedianSpacing(particles) / kPhysTwinSpacing);
 }
 
 int PhysTwinPasses(const Recording& recording) {

@@ -72,6 +72,17 @@ std::vector<Neighbour> NeighbourSearch::Within(const Eigen::Vector3d& query, dou
   return found;
 }
 
+double MedianSpacing(const Points& points) {
+  const NeighbourSearch search(points);
+  std::vector<double> spacing;
+  for (int i = 0; i < points.cols(); ++i) {
+    spacing.push_back(search.Nearest(points.col(i), 2)[1].distance);
+  }
+  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
+  std::nth_element(spacing.begin(), middle, spacing.end());
+  return *middle;
+}
+
 std::vector<std::array<int, 2>> PairsWithin(const Points& points, double radius) {
   std::vector<std::array<int, 2>> pairs;
   if (points.cols() == 0) return pairs;

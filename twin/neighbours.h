@@ -33,6 +33,9 @@ class NeighbourSearch {
   std::unique_ptr<Tree> tree_;
 };
 
+// Median distance of a point to its nearest other one, m. At least two points.
+double MedianSpacing(const Points& points);
+
 // All pairs (i < j) of points nearer to each other than `radius`, sorted.
 std::vector<std::array<int, 2>> PairsWithin(const Points& points, double radius);
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strain that the body has in its declared stress-free positions: rest lengths L (1 + f(s) + g .
-// y), with f piecewise linear along the body and y the place across it (body_coordinate.h), at the
-// middle of each spring. The gradient g bends a body without stress: one of 1/m has a radius of 1
-// m.
+// Strain that the body has in its declared stress-free positions: rest lengths L (1 + f(s) + g y),
+// at the middle of each spring. f is piecewise linear along the body, y is the place across it
+// (body_coordinate.h). The gradient g bends a body without stress: with 1/m to a radius of 1 m.
 #include "twin/effects/body_coordinate.h"
 #include "twin/effects/effect.h"
 
