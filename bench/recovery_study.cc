@@ -94,7 +94,7 @@ Json Run(const Case& one) {
   const Diagnosis diagnosis = Diagnose(TwinOf(made.fit), {made.fit}, {made.other}, options);
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   Json ranking = Json::array();  // of what was refitted
-  for (const EffectCandidate& candidate : diagnosis.candidates) {
+  for (const EffectCandidate& candidate : diagnosis.rankings.at(0)) {
     if (candidate.refit) {
       ranking.push_back({{"name", candidate.name},
                          {"held", candidate.refit->held},

@@ -70,6 +70,18 @@ Json UnexplainedJson(const Diagnosis& diagnosis) {
           {"steadiness", left.steadiness}};
 }
 
+Json RankingJson(const EffectRanking& ranking) {
+  Json list = Json::array();
+  for (const EffectCandidate& candidate : ranking) {
+    list.push_back(
+        {{"name", candidate.name},
+         {"score", candidate.score},
+         {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)},
+         {"parameters", candidate.refit ? ParametersOf(candidate.values) : Json(nullptr)}});
+  }
+  return list;
+}
+
 Json BinnedJson(const BinnedMeans& means) {
   return {{"x", means.x}, {"force_n", means.y}, {"standard_error_n", means.error}};
 }
@@ -94,13 +106,9 @@ Json ResidualJson(const ResidualPattern& pattern) {
 }  // namespace
 
 std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
-  Json candidates = Json::array();
-  for (const EffectCandidate& candidate : diagnosis.candidates) {
-    candidates.push_back(
-        {{"name", candidate.name},
-         {"score", candidate.score},
-         {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)},
-         {"parameters", candidate.refit ? ParametersOf(candidate.values) : Json(nullptr)}});
+  Json later = Json::array();
+  for (std::size_t i = 1; i < diagnosis.rankings.size(); ++i) {
+    later.push_back(RankingJson(diagnosis.rankings[i]));
   }
   const Json report = {
       {"recordings", {{"fit", diagnosis.fitted}, {"heldout", diagnosis.judged}}},
@@ -110,7 +118,8 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
       {"after", Pair(diagnosis.after)},
       {"gain",
        {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
-      {"candidates", candidates},
+      {"candidates", RankingJson(diagnosis.rankings.at(0))},
+      {"later_candidates", later},
       {"confounded", Confounded(diagnosis)},
       {"unexplained", UnexplainedJson(diagnosis)},
       {"residual_force",

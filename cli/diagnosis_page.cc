@@ -65,6 +65,19 @@ std::string TrackPlot(const Diagnosis& diagnosis) {
       TrackCurve(diagnosis.after_track, top, kAfterColour), InMillimetres(top));
 }
 
+std::string RankingTable(const EffectRanking& ranking) {
+  std::string table =
+      "<table><tr><th>effect</th><th>part of the misfit, linearised</th>"
+      "<th>held out, refitted</th><th>gain</th></tr>";
+  for (const EffectCandidate& candidate : ranking) {
+    table += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>{}</td><td>{}</td></tr>",
+                         candidate.name, 100 * candidate.score,
+                         candidate.refit ? InMillimetres(candidate.refit->held) : "",
+                         candidate.refit ? DescribeGain(candidate.gain) : "");
+  }
+  return table + "</table>";
+}
+
 }  // namespace
 
 std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& recording,
@@ -100,16 +113,11 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
   }
   page += fmt::format("<h2>Forces that are missing</h2><p>{}.</p>{}", DescribeResidual(diagnosis),
                       FormatResidualPlots(diagnosis, recording));
-  page +=
-      "<h2>Candidates</h2><table><tr><th>effect</th><th>part of the misfit, linearised</th>"
-      "<th>held out, refitted</th><th>gain</th></tr>";
-  for (const EffectCandidate& candidate : diagnosis.candidates) {
-    page += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>{}</td><td>{}</td></tr>",
-                        candidate.name, 100 * candidate.score,
-                        candidate.refit ? InMillimetres(candidate.refit->held) : "",
-                        candidate.refit ? DescribeGain(candidate.gain) : "");
+  for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
+    const std::string beside = i == 0 ? "" : ", beside " + diagnosis.effects.at(i - 1).name;
+    page += fmt::format("<h2>Candidates{}</h2>{}", beside, RankingTable(diagnosis.rankings[i]));
   }
-  return page + "</table></html>\n";
+  return page + "</html>\n";
 }
 
 }  // namespace physpring

@@ -22,7 +22,7 @@ std::string Join(const std::vector<std::string>& names, const char* none) {
 
 std::vector<std::string> Confounded(const Diagnosis& diagnosis) {
   std::vector<std::string> names;
-  for (const EffectCandidate& candidate : diagnosis.candidates) {
+  for (const EffectCandidate& candidate : diagnosis.rankings.at(0)) {
     if (diagnosis.effects.empty() || candidate.name == diagnosis.effects[0].name) continue;
     if (candidate.alike) names.push_back(candidate.name);
   }
@@ -108,13 +108,15 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   text += fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
   text += fmt::format("before, refitted without new effects: fit {}, held out {}\n",
                       InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held));
-  for (const EffectCandidate& candidate : diagnosis.candidates) {
-    if (!candidate.refit) continue;
-    text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
-                        candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
-                        DescribeGain(candidate.gain), candidate.gain.p);
-  }
-  for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
+  for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
+    for (const EffectCandidate& candidate : diagnosis.rankings[i]) {
+      if (!candidate.refit) continue;
+      text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
+                          candidate.name, 100 * candidate.score,
+                          InMillimetres(candidate.refit->held), DescribeGain(candidate.gain),
+                          candidate.gain.p);
+    }
+    if (i >= diagnosis.effects.size()) continue;
     text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
                         DescribeParameters(diagnosis, i));
   }

@@ -2,6 +2,7 @@
 #include "rollout/effect_keys.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -23,9 +24,15 @@ const EffectKey& Find(const std::string& name) {
   const auto found = std::find_if(keys.begin(), keys.end(),
                                   [&](const EffectKey& key) { return key.name == name; });
   if (found != keys.end()) return *found;
-  std::string all;
-  for (const EffectKey& key : keys) all += (all.empty() ? "" : ", ") + key.name;
-  throw Error(fmt::format("there is no effect '{}', but {}", name, all));
+  // those of the effect, or with the word, that is given; else all effects
+  std::vector<std::string> near, effects;
+  for (const EffectKey& key : keys) {
+    const bool has_word = !name.empty() && key.name.find(name) != std::string::npos;
+    if (has_word || key.effect() == name.substr(0, name.find('.'))) near.push_back(key.name);
+    if (effects.empty() || effects.back() != key.effect()) effects.push_back(key.effect());
+  }
+  throw Error(fmt::format("there is no effect '{}', but {}", name,
+                          fmt::join(near.empty() ? effects : near, ", ")));
 }
 
 std::string Bounds(const EffectKey& key) {

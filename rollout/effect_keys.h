@@ -26,7 +26,7 @@ const std::vector<EffectKey>& EffectKeys();
 using SceneEffects = std::map<std::string, double>;
 
 // "NAME=VALUE" to its parts. Throws Error, one line, if there is no such name (it lists those that
-// there are) or the value is no number within the bounds.
+// come near) or the value is no number within the bounds.
 std::pair<std::string, double> ParseEffect(const std::string& text);
 
 // Throws Error if a name is unknown, a value out of its bounds, or an effect is given without an

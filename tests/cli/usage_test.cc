@@ -61,7 +61,7 @@ TEST(Usage, BadUsageIsOneLine) {
   const ProgramResult unknown =
       RunProgram({"record", "a.xml", "-o", "a.npz", "--effect", "wind=3"});
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.errors.find("there is no effect 'wind', but air_drag.drag_kg_per_m, "),
+  EXPECT_NE(unknown.errors.find("there is no effect 'wind', but air_drag.wind_x_m_per_s, "),
             std::string::npos)
       << unknown.errors;
   ExpectRefused({"eval", "a.npz", "b.npz", "--substeps", "few"},

@@ -407,8 +407,10 @@ TEST(ParseEffectTest, RefusesOtherNamesAndValues) {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
     }
   };
-  expect("wind=3", "there is no effect 'wind', but air_drag.drag_kg_per_m, ");
-  expect("", "there is no effect ''");
+  expect("wind=3", "there is no effect 'wind', but air_drag.wind_x_m_per_s, ");
+  expect("yield.strain=1", "there is no effect 'yield.strain', but yield.yield_strain");
+  expect("magnet=1", "there is no effect 'magnet', but air_drag, control_latency, ");
+  expect("", "there is no effect '', but air_drag, ");
   for (const char* value : {"", "=", "=x", "=1x", "=nan", "=inf", "=-1", "=1e9"}) {
     expect(std::string("mass_distribution.mass_kg") + value,
            "mass_distribution.mass_kg takes a number from 0 to 100, not '");

@@ -126,7 +126,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   const EffectFit& accepted = loop.accepted();
   result.before = loop.before().track;
   result.before_track = loop.before().held;
-  result.candidates = loop.candidates();
+  result.rankings = loop.rankings();
   result.after = accepted.track;
   result.after_track = accepted.held;
   result.gain = loop.Gain(result.before_track, result.after_track);

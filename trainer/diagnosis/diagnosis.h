@@ -35,7 +35,7 @@ namespace physpring {
 struct DiagnosisOptions {
   int threads = 1;
   std::uint64_t seed = 0;
-  int most_effects = 3;       // accepted
+  int most_effects = 3;       // accepted; at least 1
   bool train_anew = true;     // step 6
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
   // What an effect must explain at least: a part of the error above the noise floor, and a part of
@@ -54,6 +54,10 @@ struct EffectCandidate {
   bool alike = false;              // as good as the effect that was chosen, by one standard error
 };
 
+// Of all effects in one round of the loop: those refitted first, by their error, then the others, by
+// their trace.
+using EffectRanking = std::vector<EffectCandidate>;
+
 struct Diagnosis {
   std::vector<std::string> fitted, judged;  // names of recordings; judged by none: by frames
   bool trained_on = false;                  // the twin was trained on one of the recordings
@@ -62,7 +66,7 @@ struct Diagnosis {
   BootstrapResult gain;  // of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;
   std::vector<ValueCertainty> certainty;    // of the values of `effects`, one after the other
-  std::vector<EffectCandidate> candidates;  // of the first round, best first
+  std::vector<EffectRanking> rankings;      // of round 0, and with i effects accepted of round i
   std::optional<Unexplained> unexplained;
   FrameTrack before_track, after_track;  // on held-out frames
   // Forces that the model lacks on the first recording, without and with the effects.

@@ -72,7 +72,7 @@ bool EffectLoop::Round(int round) {
   }
   const bool found = !search.fits.empty();
   const std::size_t best = found ? ChooseSimplest(search.fits, block_, options_.seed) : 0;
-  if (round == 0) candidates_ = Rank(search, best);
+  rankings_.push_back(Rank(search, best));
   const EffectFit chosen = found ? search.fits[best] : common_;
   // single springs that are not needed predict other motions worse
   const bool explained = chosen.track.held < kExplained * noise_floor_;
@@ -135,10 +135,8 @@ bool EffectLoop::IsWorthIt(const EffectFit& without, const EffectFit& with, doub
          gain.mean > options_.least_noise * noise_floor_;
 }
 
-// All effects: those refitted first, by their error, then the others, by their trace.
-std::vector<EffectCandidate> EffectLoop::Rank(const EffectSearchResult& search,
-                                              std::size_t chosen) const {
-  std::vector<EffectCandidate> candidates;
+EffectRanking EffectLoop::Rank(const EffectSearchResult& search, std::size_t chosen) const {
+  EffectRanking candidates;
   for (const EffectTrace& trace : search.traces) {
     EffectCandidate candidate{trace.effect->name(), trace.score, {}, {}, {}, false};
     for (const EffectFit& fit : search.fits) {

@@ -32,8 +32,8 @@ class EffectLoop {
   const EffectFit& accepted() const { return accepted_; }
   // The same without the springs' own parameters.
   const EffectFit& common() const { return common_; }
-  // Of the first round, best first.
-  const std::vector<EffectCandidate>& candidates() const { return candidates_; }
+  // Of each round.
+  const std::vector<EffectRanking>& rankings() const { return rankings_; }
   // How much smaller the errors of held-out frames are, by a paired block bootstrap.
   BootstrapResult Gain(const FrameTrack& without, const FrameTrack& with) const;
 
@@ -43,7 +43,7 @@ class EffectLoop {
   bool IsSurelyBetter(const EffectFit& many, const EffectFit& few) const;
   bool IsWorthIt(const EffectFit& without, const EffectFit& with, double least_gain,
                  int tried) const;
-  std::vector<EffectCandidate> Rank(const EffectSearchResult& search, std::size_t chosen) const;
+  EffectRanking Rank(const EffectSearchResult& search, std::size_t chosen) const;
   void RefitSprings(const WorkShare& stage, const std::vector<EffectFit*>& fits) const;
 
   const EffectFitting& fitting_;
@@ -56,7 +56,7 @@ class EffectLoop {
   FittedBodies bodies_;          // that effects are added to
   EffectFit common_, accepted_;  // without and with the springs' own parameters
   EffectFit before_;             // accepted_, without any new effect
-  std::vector<EffectCandidate> candidates_;
+  std::vector<EffectRanking> rankings_;
 };
 
 }  // namespace physpring
