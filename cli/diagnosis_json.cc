@@ -111,7 +111,10 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
     later.push_back(RankingJson(diagnosis.rankings[i]));
   }
   const Json report = {
-      {"recordings", {{"fit", diagnosis.fitted}, {"heldout", diagnosis.judged}}},
+      {"recordings",
+       {{"fit", diagnosis.fitted},
+        {"heldout", diagnosis.judged},
+        {"resting_frames", diagnosis.resting_frames}}},
       {"noise_floor", diagnosis.noise_floor},
       {"before", Pair(diagnosis.before)},
       {"effects", EffectList(diagnosis)},

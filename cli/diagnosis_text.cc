@@ -99,8 +99,13 @@ std::string DescribeResidual(const Diagnosis& diagnosis) {
 }
 
 std::string DescribeRecordings(const Diagnosis& diagnosis) {
-  return fmt::format("fitted to {}; judged by {}", Join(diagnosis.fitted, "nothing"),
-                     Join(diagnosis.judged, "frames that were not fitted"));
+  std::string text = fmt::format("fitted to {}; judged by {}", Join(diagnosis.fitted, "nothing"),
+                                 Join(diagnosis.judged, "frames that were not fitted"));
+  if (diagnosis.resting_frames > 0) {
+    text += fmt::format("; without the last {} frames, in which nothing moves any more",
+                        diagnosis.resting_frames);
+  }
+  return text;
 }
 
 std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
@@ -111,10 +116,10 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
     for (const EffectCandidate& candidate : diagnosis.rankings[i]) {
       if (!candidate.refit) continue;
-      text += fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
-                          candidate.name, 100 * candidate.score,
-                          InMillimetres(candidate.refit->held), DescribeGain(candidate.gain),
-                          candidate.gain.p);
+      text +=
+          fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
+                      candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
+                      DescribeGain(candidate.gain), candidate.gain.p);
     }
     if (i >= diagnosis.effects.size()) continue;
     text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,

@@ -106,8 +106,9 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     ExpectSameObject(twin, recording);
     result.judged.push_back(recording.name);
   }
-  const std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
+  std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
   const double noise = NoiseOf(splits);
+  for (SplitRecording& split : splits) result.resting_frames += LeaveOutRest(noise, &split);
   result.noise_floor = TrackNoiseFloor(noise);
   const EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits,
                               options.threads, options.journal);

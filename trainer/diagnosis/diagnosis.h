@@ -54,19 +54,20 @@ struct EffectCandidate {
   bool alike = false;              // as good as the effect that was chosen, by one standard error
 };
 
-// Of all effects in one round of the loop: those refitted first, by their error, then the others, by
-// their trace.
+// Of all effects in one round of the loop: those refitted first, by their error, then the others,
+// by their trace.
 using EffectRanking = std::vector<EffectCandidate>;
 
 struct Diagnosis {
   std::vector<std::string> fitted, judged;  // names of recordings; judged by none: by frames
+  int resting_frames = 0;                   // that are left out (split_recording.h)
   bool trained_on = false;                  // the twin was trained on one of the recordings
   double noise_floor = 0;                   // track error of a perfect model, m
   TrackPair before{}, after{};
   BootstrapResult gain;  // of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;
-  std::vector<ValueCertainty> certainty;    // of the values of `effects`, one after the other
-  std::vector<EffectRanking> rankings;      // of round 0, and with i effects accepted of round i
+  std::vector<ValueCertainty> certainty;  // of the values of `effects`, one after the other
+  std::vector<EffectRanking> rankings;    // of round 0, and with i effects accepted of round i
   std::optional<Unexplained> unexplained;
   FrameTrack before_track, after_track;  // on held-out frames
   // Forces that the model lacks on the first recording, without and with the effects.

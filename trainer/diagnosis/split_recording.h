@@ -25,6 +25,12 @@ SplitRecording UseAll(const Recording& recording, SplitRecording::Use use);
 // it has none; the rest to fit.
 SplitRecording HoldOutFrames(const Recording& recording);
 
+// Takes away the use of frames from half a second after everything came to rest, and after half of
+// what is held out: they show the same again and again, and would outweigh the motion. Rest: points
+// and controllers stay where they end, to 2 % of the farthest that they were from there, and to
+// twice the measurements' noise [m] (noise_floor.h). Returns how many frames it took.
+int LeaveOutRest(double noise, SplitRecording* split);
+
 // A copy of the recording in which, after frame 0, only frames to fit are seen.
 Recording OnlyFitFrames(const SplitRecording& split);
 

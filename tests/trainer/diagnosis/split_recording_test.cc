@@ -39,6 +39,46 @@ TEST(SplitRecording, HoldsOutEveryFourthBlockWhereThereIsNoFuture) {
   EXPECT_EQ(Count(split, Use::kHeld), 6);
 }
 
+// Swings until frame `last`, then rests.
+Recording ComesToRest(int frames, int train_frames, int last, double noise) {
+  Recording recording = Frames(frames, train_frames);
+  for (std::size_t frame = 0; frame < recording.points.size(); ++frame) {
+    const double sign = frame % 2 == 0 ? 1 : -1;
+    const bool moves = static_cast<int>(frame) <= last;
+    recording.points[frame](0, 0) = moves ? 0.1 * sign : noise * sign;
+    recording.controllers.push_back(Points::Zero(3, 1));
+  }
+  return recording;
+}
+
+TEST(SplitRecording, LeavesOutRest) {
+  const Recording recording = ComesToRest(40, 40, 20, 1e-4);
+  SplitRecording split = UseAll(recording, Use::kFit);
+  EXPECT_EQ(LeaveOutRest(0, &split), 40 - 21 - 5);
+  EXPECT_EQ(split.last(Use::kFit), 21 + 5);
+}
+
+TEST(SplitRecording, WhatStaysWithinTheNoiseRests) {
+  const Recording recording = ComesToRest(40, 40, 20, 3e-3);
+  SplitRecording split = UseAll(recording, Use::kFit);
+  EXPECT_EQ(LeaveOutRest(1e-4, &split), 0);
+  EXPECT_EQ(LeaveOutRest(3e-3, &split), 40 - 21 - 5);
+}
+
+TEST(SplitRecording, NothingRestsWhileAHandMoves) {
+  Recording recording = ComesToRest(40, 40, 20, 0);
+  for (std::size_t frame = 0; frame < 30; ++frame) recording.controllers[frame](1, 0) = 0.2;
+  SplitRecording split = UseAll(recording, Use::kFit);
+  EXPECT_EQ(LeaveOutRest(0, &split), 40 - 30 - 5);
+}
+
+TEST(SplitRecording, HalfOfWhatIsHeldOutStays) {
+  const Recording recording = ComesToRest(40, 20, 10, 0);
+  SplitRecording split = HoldOutFrames(recording);
+  EXPECT_EQ(LeaveOutRest(0, &split), 10);
+  EXPECT_EQ(Count(split, Use::kHeld), 10);
+}
+
 TEST(SplitRecording, OnlyFitFramesAreSeenInACopy) {
   const Recording recording = Frames(25, 25);
   const SplitRecording split = HoldOutFrames(recording);
