@@ -189,7 +189,7 @@ void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
   AddSeed(command, &sweep.seed, "of starts and policies");
   command
       ->add_option("--action-noise", sweep.disturbance.action,
-                   "standard deviation of an error of the hand's place, constant in an episode")
+                   "standard deviation of an error of the hand's x and y, constant in an episode")
       ->check(NumberBetween(0, 1))
       ->type_name("METRES")
       ->capture_default_str();

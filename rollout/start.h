@@ -18,8 +18,9 @@ struct EpisodeStart {
 
 // What makes episodes harder, or a little different.
 struct Disturbance {
-  double action = 0;  // m, standard deviation of each coordinate of the actions' offset: an error
-                      // of the hand's place, as a camera that is calibrated badly gives
+  double action = 0;  // m, standard deviation of x and y of the actions' offset: an error of the
+                      // hand's place, as a camera that is calibrated badly gives; a hand finds the
+                      // table's height by touch
   double start = 0;   // m, by which the object lies elsewhere, in a random direction
 };
 

@@ -23,11 +23,17 @@ constexpr int kFirstGain = 1;            // of kObserverGains: a Galerkin projec
 constexpr int kLevelStepsPerGain = 4;
 constexpr int kLevelGaussNewtonSteps = 6;
 constexpr int kLevelConjugateGradients = 12;
+constexpr double kMoreSubsteps = 1.2;  // than a projection needs
 
-// Of a frame: never more than level 0 needs.
-int MostSubsteps(const TwinLevel& dense, double fps) {
-  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
-                  static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
+// Of a frame: what level 0 needs, or somewhat more than the level begins with.
+int MostSubsteps(const Twin& twin, double fps) {
+  const auto needed = [&](const TwinLevel& level) {
+    return StableSubsteps(ComputeStabilityBound(level.system), 1 / fps, kStepSafety);
+  };
+  const TwinLevel& dense = twin.levels.front();
+  const double begin = kMoreSubsteps * needed(twin.levels.back());
+  const double most = std::max(begin, dense.substeps_per_second / fps);
+  return std::max(needed(dense), static_cast<int>(std::ceil(most)));
 }
 
 }  // namespace
@@ -38,7 +44,7 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
       options_(options),
       twin_(twin),
       level_(static_cast<int>(twin.levels.size()) - 1),
-      most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
+      most_substeps_(MostSubsteps(twin, data.recordings[0].fps)),
       held_back_(HoldBack(data, kMostLevelRecordings)),
       network_(network),
       gain_(kFirstGain),

@@ -23,6 +23,9 @@ constexpr double kExplained = 1.25, kExplainedByEffects = 2;
 // single springs could do without it.
 constexpr double kSimplyExplained = 0.8;
 
+// A rival's error of held-out frames, times that of the fit that was chosen.
+constexpr double kRival = 1.25;
+
 // Shares of the loop: refits without an effect; and of a round the search, with the springs' refit,
 // and the training.
 constexpr double kCommonPart = 0.2, kSearchPart = 0.5, kTrainingPart = 0.65;
@@ -67,9 +70,7 @@ void EffectLoop::Offer(const EffectFit& fit) {
 bool EffectLoop::Round(int round) {
   const WorkShare stage = ShareOf(round);
   EffectSearchResult search;
-  if (!IsExplained(round)) {
-    search = SearchEffects(fitting_, bodies_, effects_, stage.Part(0, kSearchPart));
-  }
+  if (!IsExplained(round)) search = Search(stage.Part(0, kSearchPart));
   const bool found = !search.fits.empty();
   const std::size_t best = found ? ChooseSimplest(search.fits, block_, options_.seed) : 0;
   rankings_.push_back(Rank(search, best));
@@ -95,6 +96,7 @@ bool EffectLoop::Round(int round) {
   if (!without_springs && !IsWorthIt(accepted_, with_springs, options_.least_gain, tried)) {
     return false;
   }
+  FindRival(search, best);
   accepted_ = std::move(with_springs);
   common_ = chosen;
   bodies_ = {{}, {chosen}};
@@ -117,6 +119,41 @@ WorkShare EffectLoop::ShareOf(int round) const {
 bool EffectLoop::IsExplained(int round) const {
   return round == 0 ? common_.track.held < kExplained * noise_floor_
                     : accepted_.track.held < kExplainedByEffects * noise_floor_;
+}
+
+// For one more effect, beside those that are accepted or beside a rival's, which then takes their
+// place.
+EffectSearchResult EffectLoop::Search(const WorkShare& stage) {
+  if (!rival_) return SearchEffects(fitting_, bodies_, effects_, stage);
+  EffectSearchResult search = SearchEffects(fitting_, bodies_, effects_, stage.Part(0, 0.5));
+  const EffectFit rival = *std::exchange(rival_, std::nullopt);
+  const FittedBodies bodies{{}, {rival}};
+  EffectSearchResult other = SearchEffects(fitting_, bodies, effects_, stage.Part(0.5, 1));
+  if (other.fits.empty()) return search;
+  const EffectFit& best = other.fits[ChooseSimplest(other.fits, block_, options_.seed)];
+  const bool better = IsSurelyBetter(best, accepted_) &&
+                      (search.fits.empty() || IsSurelyBetter(best, search.fits.front()));
+  const auto tried = static_cast<int>(other.fits.size());
+  if (!better || !IsWorthIt(rival, best, options_.least_gain, tried)) return search;
+  for (EffectCandidate& candidate : rankings_.back()) {
+    if (candidate.name == common_.start.back().name) candidate.alike = false;
+  }
+  accepted_ = common_ = rival;
+  bodies_ = bodies;
+  return other;
+}
+
+// The best other effect of a search, beside the chosen one that is about to be accepted.
+void EffectLoop::FindRival(const EffectSearchResult& search, std::size_t chosen) {
+  const auto tried = static_cast<int>(search.fits.size());
+  rival_.reset();
+  for (const EffectFit& fit : search.fits) {  // best first
+    const bool other = &fit != &search.fits[chosen];
+    const bool near = fit.track.held < kRival * search.fits[chosen].track.held;
+    if (!other || !near || IsFreeForm(fit)) continue;
+    if (IsWorthIt(common_, fit, options_.least_gain, tried)) rival_ = fit;
+    return;
+  }
 }
 
 // Many parameters must be better than few by more than a standard error.

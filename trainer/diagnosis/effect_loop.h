@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_LOOP_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_LOOP_H_
 
+#include <optional>
 #include <vector>
 
 #include "trainer/diagnosis/diagnosis.h"
@@ -40,6 +41,8 @@ class EffectLoop {
  private:
   WorkShare ShareOf(int round) const;
   bool IsExplained(int round) const;
+  EffectSearchResult Search(const WorkShare& stage);
+  void FindRival(const EffectSearchResult& search, std::size_t chosen);
   bool IsSurelyBetter(const EffectFit& many, const EffectFit& few) const;
   bool IsWorthIt(const EffectFit& without, const EffectFit& with, double least_gain,
                  int tried) const;
@@ -56,6 +59,8 @@ class EffectLoop {
   FittedBodies bodies_;          // that effects are added to
   EffectFit common_, accepted_;  // without and with the springs' own parameters
   EffectFit before_;             // accepted_, without any new effect
+  // With another effect in the last round, about as good as common_: what is added next tells.
+  std::optional<EffectFit> rival_;
   std::vector<EffectRanking> rankings_;
 };
 

@@ -41,8 +41,7 @@ constexpr std::array<Cut, 3> kCuts = {{{0.1, 2, 10, 2}, {0.05, 3, 6, 2}, {0, 12,
 
 // Under an observer, a misfit so many times the least one is hopeless.
 constexpr double kHopeless = 4;
-// An effect of more parameters takes the shape of others. It does not compete with them.
-constexpr Eigen::Index kFreeForm = 20;
+constexpr Eigen::Index kFreeForm = 20;  // parameters
 
 std::string NewEffect(const EffectFit& fit) {
   return fit.start.empty() ? "" : fit.start.back().name;
@@ -52,10 +51,6 @@ Eigen::Index ParameterCount(const EffectFit& fit) {
   Eigen::Index count = 0;
   for (const EffectValues& effect : fit.start) count += effect.values.size();
   return count;
-}
-
-bool IsFreeForm(const EffectFit& fit) {
-  return !fit.start.empty() && fit.start.back().values.size() > kFreeForm;
 }
 
 // The best by misfit, and, beside others, the best free-form one.
@@ -167,6 +162,10 @@ std::vector<EffectFit> FitFromStart(const EffectFitting& fitting,
 }
 
 }  // namespace
+
+bool IsFreeForm(const EffectFit& fit) {
+  return !fit.start.empty() && fit.start.back().values.size() > kFreeForm;
+}
 
 FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectValues>& known,
                        const WorkShare& stage) {

@@ -2,10 +2,10 @@
 """Prints tee.xml: a stiff T as one flex, because MuJoCo has no grid of that shape."""
 from itertools import permutations
 
-H = 0.015  # m, edge of a cube; the vertices' radius adds 6 mm to each side
-BAR = [(i, j, k) for i in range(10) for j in range(3) for k in range(2)]
-STEM = [(i, j, k) for i in range(4, 6) for j in range(-7, 0) for k in range(2)]
-HELD = [(i, -7, 2) for i in (4, 5, 6)] + [(i, -6, 2) for i in (4, 5, 6)]  # on top of the stem's end
+H = 0.01  # m, edge of a cube; the vertices' radius adds 6 mm to each side
+BAR = [(i, j, k) for i in range(15) for j in range(4) for k in range(3)]
+STEM = [(i, j, k) for i in range(6, 9) for j in range(-11, 0) for k in range(3)]
+HELD = [(i, j, 3) for j in (-11, -10) for i in range(6, 10)]  # on top of the stem's end
 START = 0.006  # m, height of the lowest vertices
 
 # six tetrahedra a cube: one for each way along its edges from one corner to the opposite one
