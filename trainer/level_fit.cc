@@ -23,17 +23,20 @@ constexpr int kFirstGain = 1;            // of kObserverGains: a Galerkin projec
 constexpr int kLevelStepsPerGain = 4;
 constexpr int kLevelGaussNewtonSteps = 6;
 constexpr int kLevelConjugateGradients = 12;
-constexpr double kMoreSubsteps = 1.2;  // than a projection needs
 
-// Of a frame: what level 0 needs, or somewhat more than the level begins with.
-int MostSubsteps(const Twin& twin, double fps) {
-  const auto needed = [&](const TwinLevel& level) {
-    return StableSubsteps(ComputeStabilityBound(level.system), 1 / fps, kStepSafety);
-  };
-  const TwinLevel& dense = twin.levels.front();
-  const double begin = kMoreSubsteps * needed(twin.levels.back());
-  const double most = std::max(begin, dense.substeps_per_second / fps);
-  return std::max(needed(dense), static_cast<int>(std::ceil(most)));
+// Of a frame: never more than level 0 needs.
+int MostSubsteps(const TwinLevel& dense, double fps) {
+  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
+                  static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
+}
+
+// With the last level softened where it needs more sub-steps than that: a projection sums the
+// springs between clusters, and a light cluster may get many.
+Twin Softened(Twin twin, double fps) {
+  SpringMassSystem& system = twin.levels.back().system;
+  const double timestep = 1 / (fps * MostSubsteps(twin.levels[0], fps) * kStepSafety);
+  if (ComputeStabilityBound(system).timestep < timestep) SoftenStiffNodes(timestep, &system);
+  return twin;
 }
 
 }  // namespace
@@ -42,9 +45,9 @@ LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin&
                    const GraphNetwork& network, const Eigen::VectorXd& weights)
     : data_(data),
       options_(options),
-      twin_(twin),
+      twin_(options.substeps > 0 ? twin : Softened(twin, data.recordings[0].fps)),
       level_(static_cast<int>(twin.levels.size()) - 1),
-      most_substeps_(MostSubsteps(twin, data.recordings[0].fps)),
+      most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
       held_back_(HoldBack(data, kMostLevelRecordings)),
       network_(network),
       gain_(kFirstGain),

@@ -132,6 +132,27 @@ bool LimitDashpots(double timestep, SpringMassSystem* system) {
   return timestep <= ComputeStabilityBound(*system).timestep * (1 + 1e-6);
 }
 
+void SoftenStiffNodes(double timestep, SpringMassSystem* system) {
+  const int nodes = system->node_count();
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(nodes);
+  for (int e = 0; e < system->spring_count(); ++e) {
+    const double spring =
+        timestep * timestep * system->stiffness[e] + 2 * timestep * system->dashpot[e];
+    for (int end : system->springs[e]) {
+      if (end < nodes) load[end] += spring / system->mass[end];
+    }
+  }
+  const Eigen::VectorXd factor = 2 / load.array().max(2.0);
+  for (int e = 0; e < system->spring_count(); ++e) {
+    double least = 1;
+    for (int end : system->springs[e]) {
+      if (end < nodes) least = std::min(least, factor[end]);
+    }
+    system->stiffness[e] *= least;
+    system->dashpot[e] *= least;
+  }
+}
+
 int StableSubsteps(const StabilityBound& bound, double frame_time, double safety) {
   const double substeps = std::ceil(frame_time / (safety * bound.timestep) - 1e-9);
   return static_cast<int>(std::clamp(substeps, 1.0, 1e6));

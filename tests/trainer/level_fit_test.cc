@@ -11,8 +11,8 @@
 namespace physpring {
 namespace {
 
-// A projection may be stiffer against its masses than level 0 is, and is fitted all the same.
-TEST(LevelFit, BeginsWithAProjectionThatNeedsMoreSubstepsThanLevel0) {
+// A projection may be stiffer against its masses than level 0 is.
+TEST(LevelFit, SoftensAProjectionThatNeedsMoreSubstepsThanLevel0) {
   Twin twin = SmallTwin(2);
   FitData data;
   Recording recording = RecordingOfMotion(twin, 8);
@@ -26,8 +26,7 @@ TEST(LevelFit, BeginsWithAProjectionThatNeedsMoreSubstepsThanLevel0) {
   level.stiffness *= 30;
   const GraphNetwork network(options.network.latent, 1);
   LevelFit fit(data, options, twin, network, network.first_weights());
-  const int dense = static_cast<int>(twin.levels[0].substeps_per_second);
-  ASSERT_GT(fit.SubstepsPerSecond(), dense);
+  EXPECT_LE(fit.SubstepsPerSecond(), twin.levels[0].substeps_per_second);
   ASSERT_TRUE(fit.Step());
   EXPECT_TRUE(std::isfinite(fit.mean_square()));
 }

@@ -149,6 +149,25 @@ TEST(LimitDashpots, SaysWhereSpringsAloneAreTooStiff) {
   EXPECT_FALSE(LimitDashpots(1.1 * ComputeStabilityBound(undamped).timestep, &system));
 }
 
+TEST(SoftenStiffNodes, MakesTheStepStableAndLeavesOtherSprings) {
+  SpringMassSystem system = RandomSystem(40, 0, 2);
+  const double step = 0.5 * ComputeStabilityBound(system).timestep;
+  system.mass[7] *= 1e-3;  // a light node between others
+  const SpringMassSystem before = system;
+  ASSERT_LT(ComputeStabilityBound(system).timestep, step);
+  SoftenStiffNodes(step, &system);
+  EXPECT_GE(ComputeStabilityBound(system).timestep, step);
+  for (int e = 0; e < system.spring_count(); ++e) {
+    const auto [a, b] = system.springs[e];
+    if (a == 7 || b == 7) {
+      EXPECT_LT(system.stiffness[e], before.stiffness[e]);
+      EXPECT_LT(system.dashpot[e], before.dashpot[e]);
+    } else {
+      EXPECT_EQ(system.stiffness[e], before.stiffness[e]);
+    }
+  }
+}
+
 TEST(Stability, SubstepsAreTheFewestBelowTheBound) {
   const StabilityBound bound{0, 0, 0.004};
   EXPECT_EQ(StableSubsteps(bound, 0.02, 1), 5);
