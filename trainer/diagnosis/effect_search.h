@@ -44,8 +44,8 @@ struct EffectSearchResult {
 EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
-// Whether the fit's new effect has so many parameters that it takes the shape of others. It does not
-// compete with them.
+// Whether the fit's new effect has so many parameters that it takes the shape of others. It does
+// not compete with them.
 bool IsFreeForm(const EffectFit& fit);
 
 // Which of `fits` to take: of those whose held-out error is within one standard error (of the

@@ -56,7 +56,7 @@ std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
         static_cast<int>(std::ceil(DiagnosisRate(fit.system, recording.fps) / recording.fps));
     options.deviation = deviation;
     options.difference = DirectionDifference(recording, false);
-    PieceKey key = KeyOf("residual force", fit);
+    PieceKey key = KeyOf("residual forces", fit);
     key.Add(fit.system.effects).Add(fit.system.stiffness).Add(fit.system.dashpot);
     const Eigen::VectorXd packed = fitting.journal().Get(
         key, [&] { return Pack(FindResidualForce(fit.system, recording, options)); });

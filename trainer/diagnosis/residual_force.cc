@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -18,7 +19,9 @@
 namespace physpring {
 namespace {
 
-constexpr double kResidualGain = 0.35;               // of the observer
+// Of the observer: the first under which forces can be found. Motions that part quickly (a body
+// that slips) need more, and show smaller forces.
+constexpr std::array<double, 3> kResidualGains = {0.35, 0.6, 0.85};
 constexpr int kLinearisations = 3, kKickSteps = 12;  // of conjugate gradients, for each
 constexpr double kEnough = 1.05;                     // times the variance of the measurements
 constexpr double kGainsEnough =
@@ -28,8 +31,8 @@ constexpr double kGainsEnough =
 class KickProblem {
  public:
   KickProblem(const SpringMassSystem& system, const Recording& recording,
-              const ResidualForceOptions& options)
-      : system_(system), recording_(recording), options_(options), frames_(0) {
+              const ResidualForceOptions& options, double gain)
+      : system_(system), recording_(recording), options_(options), gain_(gain), frames_(0) {
     for (int t = 1; t < recording.frame_count(); ++t) {
       for (int i = 0; i < recording.point_count(); ++i) {
         if (std::isnan(recording.points[Index(t)](0, i))) continue;
@@ -96,7 +99,7 @@ class KickProblem {
     options.controller_velocity = options_.controller_velocity;
     options.substeps = options_.substeps;
     options.growth_limit = std::numeric_limits<double>::infinity();
-    options.observer_gain = kResidualGain;
+    options.observer_gain = gain_;
     options.kicks = &kicks;
     return RollOut(system_, {&recording_, frames_}, options);
   }
@@ -113,6 +116,7 @@ class KickProblem {
   const SpringMassSystem& system_;
   const Recording& recording_;
   ResidualForceOptions options_;
+  double gain_;                            // of the observer
   int frames_;                             // up to the last one in which something is seen
   std::vector<std::pair<int, int>> seen_;  // frame, point
   // the point of linearisation
@@ -150,20 +154,19 @@ Eigen::VectorXd NormalNoise(Eigen::Index count, double deviation) {
   return noise;
 }
 
-}  // namespace
-
-ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording& recording,
-                                const ResidualForceOptions& options) {
-  KickProblem problem(system, recording, options);
+// Under an observer of this gain; nothing if the motion diverges, or, `unless_useless`, if the
+// first linearisation does not lead to smaller residuals.
+std::optional<ResidualForce> FindUnder(double gain, bool unless_useless,
+                                       const SpringMassSystem& system, const Recording& recording,
+                                       const ResidualForceOptions& options) {
+  KickProblem problem(system, recording, options, gain);
   const int nodes = system.node_count();
   if (problem.rows() == 0) {
-    return {{}, {recording.start.leftCols(nodes)}, Eigen::VectorXd::Zero(nodes), 0};
+    return ResidualForce{{}, {recording.start.leftCols(nodes)}, Eigen::VectorXd::Zero(nodes), 0};
   }
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.size());
   auto r = problem.Linearise(x);
-  if (!r) {
-    throw Error(fmt::format("recording {}: the motion diverges without forces", recording.name));
-  }
+  if (!r) return {};
   const double target =
       kEnough * options.deviation * options.deviation * static_cast<double>(problem.rows());
   int steps = 0;
@@ -178,6 +181,7 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
       better = true;
       break;
     }
+    if (!better && i == 0 && unless_useless) return {};
     if (!better) break;
     r = problem.Linearise(x);
     if (r->squaredNorm() > kGainsEnough * before) break;
@@ -202,6 +206,17 @@ ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording&
   const double values = 3 * static_cast<double>(result.force.size());
   result.noise = fps * mass.cwiseProduct((squared / values).cwiseSqrt());
   return result;
+}
+
+}  // namespace
+
+ResidualForce FindResidualForce(const SpringMassSystem& system, const Recording& recording,
+                                const ResidualForceOptions& options) {
+  for (double gain : kResidualGains) {
+    const bool last = gain == kResidualGains.back();
+    if (auto found = FindUnder(gain, !last, system, recording, options)) return *std::move(found);
+  }
+  throw Error(fmt::format("recording {}: the motion diverges without forces", recording.name));
 }
 
 }  // namespace physpring
