@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 namespace physpring {
 namespace {
@@ -19,10 +20,10 @@ std::vector<double> SquaresFromEnd(const std::vector<Points>& frames) {
   const Eigen::Index count = frames[0].cols();
   Points end = Points::Zero(3, count);
   Eigen::ArrayXi seen = Eigen::ArrayXi::Zero(count);
-  for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
+  for (const Points& frame : std::views::reverse(frames)) {
     for (Eigen::Index i = 0; i < count; ++i) {
-      if (seen[i] == kEnd || frame->col(i).hasNaN()) continue;
-      end.col(i) += frame->col(i);
+      if (seen[i] == kEnd || frame.col(i).hasNaN()) continue;
+      end.col(i) += frame.col(i);
       ++seen[i];
     }
   }
