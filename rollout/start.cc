@@ -30,7 +30,9 @@ EpisodeStart StartOf(const Task& task, std::uint64_t seed, int episode,
   start.object.orientation = (Yaw(yaw) * task.object.orientation).normalized();
   Eigen::Vector3d normal;
   for (double& coordinate : normal) coordinate = Normal(&random);
-  start.action_offset.head<2>() = disturbance.action * normal.head<2>();
+  if (disturbance.action > 0) {
+    start.action_offset.head<2>() = disturbance.action * normal.head<2>();
+  }
   start.seed = random();
   const double direction = 2 * std::numbers::pi * Uniform(&random);
   start.object.position +=

@@ -30,29 +30,26 @@ int MostSubsteps(const TwinLevel& dense, double fps) {
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
 }
 
-// With the last level softened where it needs more sub-steps than that: a projection sums the
-// springs between clusters, and a light cluster may get many.
-Twin Softened(Twin twin, double fps) {
-  SpringMassSystem& system = twin.levels.back().system;
-  const double timestep = 1 / (fps * MostSubsteps(twin.levels[0], fps) * kStepSafety);
-  if (ComputeStabilityBound(system).timestep < timestep) SoftenStiffNodes(timestep, &system);
-  return twin;
-}
-
 }  // namespace
 
 LevelFit::LevelFit(const FitData& data, const TrainOptions& options, const Twin& twin,
                    const GraphNetwork& network, const Eigen::VectorXd& weights)
     : data_(data),
       options_(options),
-      twin_(options.substeps > 0 ? twin : Softened(twin, data.recordings[0].fps)),
+      twin_(twin),
       level_(static_cast<int>(twin.levels.size()) - 1),
       most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
       held_back_(HoldBack(data, kMostLevelRecordings)),
       network_(network),
       gain_(kFirstGain),
       common_(Eigen::VectorXd::Zero(CommonParameters().size())),
-      corrections_(BeginCorrections(weights)) {}
+      corrections_(BeginCorrections(weights)) {
+  if (options_.substeps > 0) return;
+  // a projection sums the springs between clusters, and a light cluster may get many
+  SpringMassSystem& system = twin_.levels.back().system;
+  const double timestep = 1 / (data.recordings[0].fps * most_substeps_ * kStepSafety);
+  if (ComputeStabilityBound(system).timestep < timestep) SoftenStiffNodes(timestep, &system);
+}
 
 CorrectionsFit LevelFit::BeginCorrections(const Eigen::VectorXd& weights) const {
   return {options_.network, data_.recordings[0].ground.has_value(), weights};
