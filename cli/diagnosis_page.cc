@@ -114,6 +114,7 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
   page += fmt::format("<h2>Forces that are missing</h2><p>{}.</p>{}", DescribeResidual(diagnosis),
                       FormatResidualPlots(diagnosis, recording));
   for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
+    if (diagnosis.rankings[i].empty()) continue;  // nothing was missing any more
     const std::string beside = i == 0 ? "" : ", beside " + diagnosis.effects.at(i - 1).name;
     page += fmt::format("<h2>Candidates{}</h2>{}", beside, RankingTable(diagnosis.rankings[i]));
   }

@@ -13,6 +13,8 @@ using Vector = Eigen::Vector3d;
 
 // Part of the overlap with a body that moves which is undone in a step.
 constexpr double kRecovery = 0.2;
+// A body is heavy to nodes that weigh less than this part of what it shows them.
+constexpr double kHeavy = 0.1;
 // Of the contact law.
 constexpr double kMostFriction = 2;
 
@@ -54,9 +56,21 @@ void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<doub
   recovery_rate_ = kRecovery / model->opt.timestep;
   if (!level_->has_surface) return;
   for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, data->contact[i]);
+  LetHeavyBodiesGoOn();
   // as in twin/contact.h: the ground before the geoms that move
   std::stable_partition(touches_.begin(), touches_.end(),
                         [](const Touch& touch) { return touch.body < 0; });
+}
+
+void Surfaces::LetHeavyBodiesGoOn() {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    double nodes = 0;  // kg
+    for (const Touch& touch : touches_) {
+      if (touch.body == static_cast<int>(b)) nodes += level_->system.mass[touch.node];
+    }
+    auto& inverse = bodies_[b].inverse_inertia;
+    if (nodes * inverse.diagonal().tail<3>().maxCoeff() < kHeavy) inverse.setZero();
+  }
 }
 
 void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
@@ -89,6 +103,7 @@ void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStat
   const int other_geom = contact.geom[1 - node_geom];
   if (model->geom_priority[other_geom] > model->geom_priority[geom]) {
     law.friction = std::min(model->geom_friction[3 * other_geom], kMostFriction);
+    law.restitution = 0;
   }
   touches_.push_back(
       {node, FindBody(model, data, other_body), law, normal, X(state[node]), gap, 0});

@@ -5,11 +5,13 @@
 // more than that. The contact law (twin/contact_law.h) acts on them here, in every sub-step, with
 // the surface taken as flat and moving along with its body:
 //   u = v - s,   u' = Impact(u, n),   J = (I / m + W)^-1 (u' - u),   v += J / m
-// s: velocity of the surface, W: inverse mass that the body shows at the node. The body gets -J:
-// its motion goes on from there within the step, and MuJoCo gets the mean force. What else drives
-// the body (motors, the other bodies it hits) MuJoCo only adds after this, so a finger that presses
-// steadily creeps a little into the nodes in every step; s therefore has a part, along n, that
-// undoes a fifth of the overlap with a body that moves in each step.
+// s: velocity of the surface, W: inverse mass that the body shows at the node. The body gets -J,
+// MuJoCo the mean force of a step. What else drives the body (motors, the other bodies it hits)
+// MuJoCo only adds after this. So a body that is ten times as heavy as the nodes it touches goes on
+// within the step as it moves (W = 0), and a lighter one as -J alone lets it; of the overlap that
+// is left a part of s, along n, undoes a fifth in each step. A geom of higher priority than the
+// node's brings its own friction, and takes the bounce. Otherwise what is pressed between fingers
+// vibrates, and creeps out of the grip (docs/decisions.md, "Fingers hold what they press").
 #ifndef PHYSPRING_PLUGIN_SURFACES_H_
 #define PHYSPRING_PLUGIN_SURFACES_H_
 
@@ -72,6 +74,7 @@ class Surfaces {
   void CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
                       const mjContact& contact);
   int FindBody(const mjModel* model, mjData* data, int body);
+  void LetHeavyBodiesGoOn();
   // Lets the node of a touch, with velocity v, hit the surface if it does; returns its velocity.
   Vector Hit(const Touch& touch, const Vector& x, const Vector& v, double h);
 

@@ -213,6 +213,16 @@ TEST(Contact, GeomOfHigherPriorityBringsItsFriction) {
   EXPECT_NEAR(scene.Positions()(0, 0), speed * speed / (2 * mu * kG), 1e-3);
 }
 
+TEST(Contact, GeomOfHigherPriorityTakesTheBounce) {
+  const double h = 1e-4, height = 0.1;
+  LevelSceneOptions options = OnFloor(h);
+  options.world = R"(<geom type="plane" size="0 0 1" priority="3"/>)";
+  LevelScene scene(Ball(height + 0.01, {0.6, 0.4, 0, 0, 0}), options);
+  scene.Step(static_cast<int>(1.2 * std::sqrt(2 * height / kG) / h));
+  EXPECT_LT(std::abs(scene.Positions()(2, 0) - 0.01), 1e-3);
+  EXPECT_LT(scene.Velocities().norm(), 2 * kG * h);
+}
+
 // Two balls joined by a spring, between two fingers of 0.1 kg that something presses together.
 TEST(Contact, FingersHoldWhatTheyPress) {
   const double force = 2;  // N, of each finger; the weight is 1 N
@@ -238,6 +248,51 @@ TEST(Contact, FingersHoldWhatTheyPress) {
   // 3 s without friction are 44 m, and fingers that creep meet in the middle: 20 mm
   EXPECT_NEAR(data->qpos[4], 0, 3e-3) << "slips";
   EXPECT_NEAR(data->qpos[0] + data->qpos[1], squeezed, 1e-3) << "sinks in";
+}
+
+// A soft block between two fingers that weigh far more, and that do not let it slip or vibrate.
+TEST(Contact, HeavyFingersHoldStill) {
+  const double spacing = 0.01;
+  Points at(3, 48);  // 3 x 4 x 4
+  for (int i = 0; i < 48; ++i) at.col(i) << i % 3 - 1, i / 3 % 4, i / 12;
+  at *= spacing;
+  SpringMassSystem block = Particles(at, 0.002);
+  for (int i = 0; i < 48; ++i) {
+    for (int j = i + 1; j < 48; ++j) {
+      if ((at.col(i) - at.col(j)).norm() < 1.8 * spacing) block.springs.push_back({i, j});
+    }
+  }
+  const auto springs = static_cast<Eigen::Index>(block.springs.size());
+  block.stiffness = Eigen::VectorXd::Constant(springs, 300);
+  block.dashpot = Eigen::VectorXd::Constant(springs, 0.02);
+  block.rest_length.resize(springs);
+  for (Eigen::Index e = 0; e < springs; ++e) {
+    const auto [a, b] = block.springs[static_cast<std::size_t>(e)];
+    block.rest_length[e] = (at.col(a) - at.col(b)).norm();
+  }
+  block.contact = {0.06, 0.5, 0, 0, 0};
+  block.contact_radius.setConstant(0.004);
+  const ModelPtr model = CompileMjcf(
+      LevelMjcf(block, {.contact = true, .timestep = 2e-3, .substep = 0.25e-3, .world = R"(
+      <body pos="-0.025 0.015 0.015"><joint type="slide" axis="1 0 0"/>
+        <geom type="box" size="0.01 0.02 0.01" mass="1" priority="2" friction="1"/></body>
+      <body pos="0.025 0.015 0.015"><joint type="slide" axis="-1 0 0"/>
+        <geom type="box" size="0.01 0.02 0.01" mass="1" priority="2" friction="1"/></body>)"}));
+  const DataPtr data = MakeData(*model);
+  const auto height = [&] {  // of the block
+    return Eigen::Map<const Points>(data->qpos + 2, 3, 48).row(2).mean();
+  };
+  const auto hold = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      for (int finger : {0, 1}) data->qfrc_applied[finger] = 3 - 20 * data->qvel[finger];
+      Step(*model, data.get());
+    }
+  };
+  hold(500);
+  const double before = height();
+  hold(1000);
+  EXPECT_NEAR(height(), before, 1e-4) << "creeps";
+  EXPECT_LT(Eigen::Map<const Points>(data->qvel + 2, 3, 48).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 TEST(Contact, TwoTwinsBounceOffEachOther) {

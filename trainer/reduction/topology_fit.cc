@@ -114,6 +114,19 @@ Eigen::VectorXd TopologyFit::PositionDistances() const {
   return distance;
 }
 
+// Ward's factors of the distances: sqrt(m_a m_b / (m_a + m_b)).
+Eigen::VectorXd TopologyFit::MassFactors() const {
+  const SpringMassSystem& system = twin_.levels.back().system;
+  const std::vector<std::array<int, 2>> pairs = FreePairs(system);
+  Eigen::VectorXd factor(static_cast<Eigen::Index>(pairs.size()));
+  for (Eigen::Index e = 0; e < factor.size(); ++e) {
+    const auto [a, b] = pairs[static_cast<std::size_t>(e)];
+    const double m = system.mass[a], n = system.mass[b];
+    factor[e] = std::sqrt(m * n / (m + n));
+  }
+  return factor;
+}
+
 void TopologyFit::Learn(const Eigen::VectorXd& weights_bar) {
   Adam adam(weights_.size());
   adam.steps = iteration_;
@@ -130,18 +143,20 @@ bool TopologyFit::Step() {
   using Kind = TrainOptions::Network::Features;
   const double temperature = iteration_ == kIterations ? 0 : Temperature();
   // distances in units of their mean, so that the temperature means the same at all levels
+  const Eigen::VectorXd factor = MassFactors();
   if (options_.network.features == Kind::kPositions) {
-    const Eigen::VectorXd distance = PositionDistances();
+    const Eigen::VectorXd distance = PositionDistances().cwiseProduct(factor);
     Draw(distance / distance.mean(), temperature);
   } else {
     Tape tape(weights_);
     const Tape::Node latent = network_.Encode(LevelsOf(twin_), &tape).nodes;
     const Tape::Node apart = tape.Distance(latent, FreePairs(twin_.levels.back().system));
-    const double unit = tape.value(apart).mean();
-    const Eigen::VectorXd distance_bar = Draw(tape.value(apart).col(0) / unit, temperature);
+    const Eigen::VectorXd distance = tape.value(apart).col(0).cwiseProduct(factor);
+    const double unit = distance.mean();
+    const Eigen::VectorXd distance_bar = Draw(distance / unit, temperature);
     if (temperature > 0 && options_.network.features == Kind::kLearned) {
       Eigen::VectorXd weights_bar = Eigen::VectorXd::Zero(weights_.size());
-      tape.Backward({{apart, distance_bar / unit}}, &weights_bar);
+      tape.Backward({{apart, distance_bar.cwiseProduct(factor) / unit}}, &weights_bar);
       Learn(weights_bar);
     }
   }
