@@ -114,19 +114,6 @@ Eigen::VectorXd TopologyFit::PositionDistances() const {
   return distance;
 }
 
-// Ward's factors of the distances: sqrt(m_a m_b / (m_a + m_b)).
-Eigen::VectorXd TopologyFit::MassFactors() const {
-  const SpringMassSystem& system = twin_.levels.back().system;
-  const std::vector<std::array<int, 2>> pairs = FreePairs(system);
-  Eigen::VectorXd factor(static_cast<Eigen::Index>(pairs.size()));
-  for (Eigen::Index e = 0; e < factor.size(); ++e) {
-    const auto [a, b] = pairs[static_cast<std::size_t>(e)];
-    const double m = system.mass[a], n = system.mass[b];
-    factor[e] = std::sqrt(m * n / (m + n));
-  }
-  return factor;
-}
-
 void TopologyFit::Learn(const Eigen::VectorXd& weights_bar) {
   Adam adam(weights_.size());
   adam.steps = iteration_;
@@ -143,7 +130,7 @@ bool TopologyFit::Step() {
   using Kind = TrainOptions::Network::Features;
   const double temperature = iteration_ == kIterations ? 0 : Temperature();
   // distances in units of their mean, so that the temperature means the same at all levels
-  const Eigen::VectorXd factor = MassFactors();
+  const Eigen::VectorXd factor = WardFactors(twin_.levels.back().system);
   if (options_.network.features == Kind::kPositions) {
     const Eigen::VectorXd distance = PositionDistances().cwiseProduct(factor);
     Draw(distance / distance.mean(), temperature);

@@ -46,7 +46,6 @@ class TopologyFit {
   // `distance`.
   Eigen::VectorXd Draw(const Eigen::VectorXd& distance, double temperature);
   Eigen::VectorXd PositionDistances() const;
-  Eigen::VectorXd MassFactors() const;
   void Learn(const Eigen::VectorXd& weights_bar);
   void Consider(const Assignment& assignment, double error);
 
