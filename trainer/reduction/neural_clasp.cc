@@ -77,17 +77,6 @@ std::vector<std::array<int, 2>> FreePairs(const SpringMassSystem& system) {
   return pairs;
 }
 
-Eigen::VectorXd WardFactors(const SpringMassSystem& system) {
-  const std::vector<std::array<int, 2>> pairs = FreePairs(system);
-  Eigen::VectorXd factor(static_cast<Eigen::Index>(pairs.size()));
-  for (Eigen::Index e = 0; e < factor.size(); ++e) {
-    const auto [a, b] = pairs[static_cast<std::size_t>(e)];
-    const double m = system.mass[a], n = system.mass[b];
-    factor[e] = std::sqrt(m * n / (m + n));
-  }
-  return factor;
-}
-
 Eigen::MatrixX2d DrawScores(const Eigen::VectorXd& distance, double temperature,
                             std::mt19937_64* random) {
   Eigen::MatrixX2d scores(distance.size(), 2);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Neural-CLASP (paper, section 3.2.1): which nodes are joined is decided by the distances of their
 // latent features. A node i goes to a spring neighbour j, or stays, with the probabilities
-//   P_ij = softmax_j (-D_ij / lambda),   D_ij = sqrt(m_i m_j / (m_i + m_j)) |h_i - h_j|,
-//   j: the spring neighbours and i itself.
-// The factor is Ward's (J. Am. Stat. Assoc. 58, 1963; the paper has 1): D^2 is what joining i and j
-// adds to the spread of features within clusters, so what is light is joined first.
+//   P_ij = softmax_j (-D_ij / lambda),   D_ij = |h_i - h_j|,   j: the spring neighbours and i
+//   itself.
 // One such choice is drawn by adding lambda times Gumbel noise to -D (none at the end), and hard
 // clusters are made of it: the best-scored choices first, each node at most once and only to a node
 // that stays, until exactly the budget is left; the last score taken is the logit of staying. Where
@@ -27,9 +25,6 @@ namespace physpring {
 
 // The springs between free nodes, as pairs.
 std::vector<std::array<int, 2>> FreePairs(const SpringMassSystem& system);
-
-// sqrt(m_i m_j / (m_i + m_j)) of each of these pairs, sqrt(kg).
-Eigen::VectorXd WardFactors(const SpringMassSystem& system);
 
 // Scores -D + lambda g of both directions of each pair (first to second, then second to first).
 Eigen::MatrixX2d DrawScores(const Eigen::VectorXd& distance, double temperature,

@@ -130,20 +130,18 @@ bool TopologyFit::Step() {
   using Kind = TrainOptions::Network::Features;
   const double temperature = iteration_ == kIterations ? 0 : Temperature();
   // distances in units of their mean, so that the temperature means the same at all levels
-  const Eigen::VectorXd factor = WardFactors(twin_.levels.back().system);
   if (options_.network.features == Kind::kPositions) {
-    const Eigen::VectorXd distance = PositionDistances().cwiseProduct(factor);
+    const Eigen::VectorXd distance = PositionDistances();
     Draw(distance / distance.mean(), temperature);
   } else {
     Tape tape(weights_);
     const Tape::Node latent = network_.Encode(LevelsOf(twin_), &tape).nodes;
     const Tape::Node apart = tape.Distance(latent, FreePairs(twin_.levels.back().system));
-    const Eigen::VectorXd distance = tape.value(apart).col(0).cwiseProduct(factor);
-    const double unit = distance.mean();
-    const Eigen::VectorXd distance_bar = Draw(distance / unit, temperature);
+    const double unit = tape.value(apart).mean();
+    const Eigen::VectorXd distance_bar = Draw(tape.value(apart).col(0) / unit, temperature);
     if (temperature > 0 && options_.network.features == Kind::kLearned) {
       Eigen::VectorXd weights_bar = Eigen::VectorXd::Zero(weights_.size());
-      tape.Backward({{apart, distance_bar.cwiseProduct(factor) / unit}}, &weights_bar);
+      tape.Backward({{apart, distance_bar / unit}}, &weights_bar);
       Learn(weights_bar);
     }
   }

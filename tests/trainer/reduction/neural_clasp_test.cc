@@ -49,23 +49,6 @@ TEST(NeuralClasp, TheGradientOfALogProbabilityIsItsDerivative) {
   EXPECT_TRUE(report.passed) << report.log;
 }
 
-// With features that are equally far apart, the lightest pair.
-TEST(NeuralClasp, JoinsWhatIsLightFirst) {
-  SpringMassSystem system = RandomSystem(40, 2, 8);
-  Random random(9);
-  for (double& mass : system.mass) mass = random(0.1, 1);
-  const Eigen::VectorXd factor = WardFactors(system);
-  Eigen::Index lightest = 0;
-  factor.minCoeff(&lightest);
-  const auto [a, b] = FreePairs(system)[static_cast<std::size_t>(lightest)];
-  EXPECT_NEAR(factor[lightest] * factor[lightest], 1 / (1 / system.mass[a] + 1 / system.mass[b]),
-              1e-12);
-  std::mt19937_64 unused;
-  const Choice choice = ChooseClusters(system, DrawScores(factor, 0, &unused), 39);
-  EXPECT_EQ(CountClusters(choice.assignment), 39);
-  EXPECT_EQ(choice.assignment[a], choice.assignment[b]);
-}
-
 // Of two springs, a node takes the one of distance D with the probability of a softmax of -D.
 TEST(NeuralClasp, DrawsByTheSoftmax) {
   const Eigen::Vector2d distance(0.3, 0.6);
