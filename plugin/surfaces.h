@@ -56,10 +56,10 @@ class Surfaces {
   // mass, in the world's axes.
   struct Body {
     int id;
-    Vector centre;     // m
-    Vector6 velocity;  // rad/s, m/s
-    Vector6 impulse;   // N m s, N s
-    Eigen::Matrix<double, 6, 6> inverse_inertia;
+    Vector centre;                                // m
+    Vector6 velocity;                             // rad/s, m/s
+    Vector6 impulse;                              // N m s, N s
+    Eigen::Matrix<double, 6, 6> inverse_inertia;  // 0: goes on as it moves
   };
   struct Touch {
     int node;

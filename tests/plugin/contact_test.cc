@@ -8,6 +8,7 @@
 #include "tests/support/level_scene.h"
 #include "tests/support/random_system.h"
 #include "tests/support/simulation.h"
+#include "twin/topology.h"
 
 namespace physpring {
 namespace {
@@ -254,22 +255,17 @@ TEST(Contact, FingersHoldWhatTheyPress) {
 TEST(Contact, HeavyFingersHoldStill) {
   const double spacing = 0.01;
   Points at(3, 48);  // 3 x 4 x 4
-  for (int i = 0; i < 48; ++i) at.col(i) << i % 3 - 1, i / 3 % 4, i / 12;
+  for (int i = 0; i < 48; ++i) {
+    const int row = i / 3, layer = row / 4;
+    at.col(i) << i % 3 - 1, row % 4, layer;
+  }
   at *= spacing;
   SpringMassSystem block = Particles(at, 0.002);
-  for (int i = 0; i < 48; ++i) {
-    for (int j = i + 1; j < 48; ++j) {
-      if ((at.col(i) - at.col(j)).norm() < 1.8 * spacing) block.springs.push_back({i, j});
-    }
-  }
+  block.springs = BuildSprings(at, 0, {}, {.radius = 1.8 * spacing, .max_neighbours = 47}, "block");
   const auto springs = static_cast<Eigen::Index>(block.springs.size());
   block.stiffness = Eigen::VectorXd::Constant(springs, 300);
   block.dashpot = Eigen::VectorXd::Constant(springs, 0.02);
-  block.rest_length.resize(springs);
-  for (Eigen::Index e = 0; e < springs; ++e) {
-    const auto [a, b] = block.springs[static_cast<std::size_t>(e)];
-    block.rest_length[e] = (at.col(a) - at.col(b)).norm();
-  }
+  block.rest_length = SpringLengths(block.springs, at, {});
   block.contact = {0.06, 0.5, 0, 0, 0};
   block.contact_radius.setConstant(0.004);
   const ModelPtr model = CompileMjcf(

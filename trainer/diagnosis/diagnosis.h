@@ -11,9 +11,8 @@
 //               its single springs fitted, too, it is accepted if it beats the refit without it
 //               by more than chance (paired block bootstrap) and by more than a small part
 //   6  train    a twin that was trained on these recordings anew, with the effect
-//   7  repeat from 3, until nothing is accepted; where another effect was about as good, beside
-//   that,
-//             too: what is added next tells which of them it is
+//   7  repeat from 3, until nothing is accepted; where another effect was about as good,
+//               beside that, too: what is added next tells which of them it is
 //   8  tell    the forces that are still missing, before and after (residual_force.h)
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
