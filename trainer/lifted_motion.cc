@@ -71,6 +71,7 @@ std::optional<LiftedMotion::Motion> LiftedMotion::Run(const SpringMassSystem& sy
   if (substeps == 0) return {};
   RolloutOptions rollout = options_.rollout;
   rollout.substeps = substeps;
+  rollout.threads = episode_count() == 1 ? options_.threads : 1;
   Motion motion;
   motion.rollouts.resize(episodes_.size());
   motion.particles.resize(episodes_.size());

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/rollout.h"
 
+#include <array>
 #include <cmath>
+#include <future>
 #include <utility>
 
 #include "trainer/observer.h"
@@ -18,19 +20,21 @@ class RolloutIn : public Rollout {
       : recording_(*episode.recording),
         observer_gain_(options.observer_gain),
         growth_limit_(options.growth_limit),
+        recording_ahead_(options.threads > 1 ? std::launch::async : std::launch::deferred),
         kicks_(options.kicks),
         delay_(ControllerDelay(system)),
         gradient_(system),
         simulator_(system, EnvironmentOf(recording_),
                    {1 / recording_.fps, options.substeps, options.controller_velocity}),
-        workspace_(simulator_) {
+        workspaces_{typename Simulator<Real>::Workspace(simulator_),
+                    typename Simulator<Real>::Workspace(simulator_)} {
     states_.push_back(
         simulator_.MakeState(recording_.start.leftCols(system.node_count()), recording_.velocity));
     positions_.push_back(simulator_.Positions(states_[0]));
     for (int frame = 1; frame < episode.frames; ++frame) {
       if (kicks_) Kick((*kicks_)[static_cast<std::size_t>(frame) - 1], &states_.back());
       NodeStates<Real> state = states_.back();
-      simulator_.AdvanceFrame(Input(frame), &state, &workspace_);
+      simulator_.AdvanceFrame(Input(frame), &state, &workspaces_[0]);
       Points position = simulator_.Positions(state);
       if (!position.allFinite() || position.cwiseAbs().maxCoeff() > kFarAway) {
         diverged_ = true;
@@ -47,6 +51,7 @@ class RolloutIn : public Rollout {
     if (kicks_) result.kicks_bar.resize(states_.size() - 1);
     NodeStates<Real> state_bar(states_[0].size());
     double injected_squared = 0;
+    std::future<void> recorded = Record(states_.size() - 1);
     for (std::size_t frame = states_.size() - 1; frame >= 1; --frame) {
       ObserveAdjoint(observer_gain_, recording_, static_cast<int>(frame), &state_bar);
       injected_squared += position_bar[frame].squaredNorm();
@@ -56,8 +61,9 @@ class RolloutIn : public Rollout {
         state_bar.assign(state_bar.size(), {});
         Add(position_bar[frame], &state_bar);
       }
-      simulator_.AdvanceFrameAdjoint(states_[frame - 1], Input(static_cast<int>(frame)), &state_bar,
-                                     &result.gradient, &workspace_);
+      recorded.get();
+      if (frame > 1) recorded = Record(frame - 1);
+      simulator_.RecordedFrameAdjoint(&state_bar, &result.gradient, &workspaces_[frame % 2]);
       if (kicks_) result.kicks_bar[frame - 1] = simulator_.Velocities(state_bar);
     }
     result.velocity_bar = simulator_.Velocities(state_bar);
@@ -65,6 +71,14 @@ class RolloutIn : public Rollout {
   }
 
  private:
+  // Goes through a frame again for its adjoint, while that of the frame after it is worked out.
+  std::future<void> Record(std::size_t frame) {
+    return std::async(recording_ahead_, [this, frame] {
+      NodeStates<Real> state = states_[frame - 1];
+      simulator_.RecordFrame(Input(static_cast<int>(frame)), &state, &workspaces_[frame % 2]);
+    });
+  }
+
   FrameInput Input(int frame) const { return RecordedInput(recording_, frame, delay_); }
 
   static void Kick(const Points& kick, NodeStates<Real>* state) {
@@ -89,12 +103,13 @@ class RolloutIn : public Rollout {
   const Recording& recording_;
   double observer_gain_;
   double growth_limit_;
+  std::launch recording_ahead_;
   const std::vector<Points>* kicks_;
   double delay_;             // of the controllers, s
   SystemGradient gradient_;  // zero, of the right shapes
   Simulator<Real> simulator_;
-  typename Simulator<Real>::Workspace workspace_;
-  std::vector<NodeStates<Real>> states_;  // at each frame
+  std::array<typename Simulator<Real>::Workspace, 2> workspaces_;  // of even and odd frames
+  std::vector<NodeStates<Real>> states_;                           // at each frame
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rollout of a recording's motion and its adjoint: one checkpoint a frame, sub-steps recomputed
-// frame by frame on the way back.
+// frame by frame on the way back, by a thread of their own where two are allowed.
 //
 // Gradients of long rollouts are of use only while the adjoint stays bounded. When, going back in
 // time, its norm passes `growth_limit` times the norm of all that was put into it, it is set to
@@ -29,6 +29,7 @@ struct RolloutOptions {
   int substeps = 0;  // a frame, >= 1
   double growth_limit = 1e3;
   double observer_gain = 0;  // observer.h; 0: none
+  int threads = 1;           // at most; the result does not depend on it
   // Added to the velocities at frames 0, 1, ... (after an observer's correction), 3 x nodes, m/s:
   // as many as there are steps from frame to frame. They must outlive the rollout.
   const std::vector<Points>* kicks = nullptr;

@@ -49,6 +49,7 @@ std::optional<Eigen::VectorXd> TrackProblem::RollOutAll(
   const SpringMassSystem system = parameters_.Apply(x);
   RolloutOptions options = options_.rollout;
   options.substeps = substeps;
+  options.threads = episodes_.size() == 1 ? options_.threads : 1;
   Eigen::VectorXd residuals(offset_.back());
   std::vector<char> diverged(episodes_.size(), 0);
   if (rollouts) rollouts->resize(episodes_.size());

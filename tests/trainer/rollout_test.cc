@@ -76,6 +76,16 @@ TEST(Rollout, AdjointAgreesWithDifferences) {
   ExpectPasses(c, {{"drag", &c.system.drag, 1e-2, adjoint.gradient.drag}});
 }
 
+TEST(Rollout, AdjointIsTheSameOnTwoThreads) {
+  Case c;
+  const RolloutAdjoint one = c.Run()->Adjoint(c.weights);
+  c.options.threads = 2;
+  const RolloutAdjoint two = c.Run()->Adjoint(c.weights);
+  EXPECT_EQ(one.gradient.stiffness, two.gradient.stiffness);
+  EXPECT_EQ(one.gradient.mass, two.gradient.mass);
+  EXPECT_EQ(one.velocity_bar, two.velocity_bar);
+}
+
 // A measured motion that the body would not take by itself, a point unseen here and there.
 void MoveAway(Recording* recording) {
   Random random(7);
