@@ -9,13 +9,15 @@
 namespace physpring {
 namespace {
 
-// The pads come down to both sides of the diagonal, so far from the corner, and close: the cloth
-// between them buckles up.
-constexpr double kPinch = 0.035;       // m
-constexpr double kClothTable = 0.022;  // m, of the hand: the pads press on the table
-constexpr double kLay = 0.055;         // m, of the hand where it opens
+// The pads come down to both sides of the way to the target, so far from the particle that is
+// taken, and close: the cloth between them buckles up.
+constexpr double kPinch = 0.03;  // m
+// m, of the hand: the pads end 1 mm above the table. Pressed on it, friction holds them open until
+// the hand goes up, and what they then still find between them is chance.
+constexpr double kClothTable = 0.024;
+constexpr double kLay = 0.045;  // m, of the hand where it opens
 // The arc is that much tighter than the cloth would allow: what hangs slack falls forward, m.
-constexpr double kSlack = 0.055;
+constexpr double kSlack = 0.01;
 
 }  // namespace
 
@@ -31,9 +33,9 @@ std::vector<Waypoint> ClothFolding::Plan(int leg, const Observation& observation
   Eigen::Vector3d taken = observation.particles.col(taken_);
   Eigen::Vector3d target = observation.particles.col(target_);
   taken.z() = target.z() = 0;
-  const double diagonal = (target - taken).norm();
-  if (!(diagonal > 2 * (kPinch + kSlack))) throw PolicyError("does not see the cloth spread out");
-  const Eigen::Vector3d along = (target - taken) / diagonal;
+  const double apart = (target - taken).norm();
+  if (!(apart > 2 * (kPinch + kSlack))) throw PolicyError("does not see the cloth spread out");
+  const Eigen::Vector3d along = (target - taken) / apart;
   const double yaw = std::atan2(along.y(), along.x());
   const auto at = [&](const Eigen::Vector3d& place, double z, double gripper, int frames) {
     return HandDown({place.x(), place.y(), z}, yaw, gripper, frames);
@@ -41,7 +43,7 @@ std::vector<Waypoint> ClothFolding::Plan(int leg, const Observation& observation
   const Eigen::Vector3d pinch = taken + kPinch * along, middle = (taken + target) / 2;
   std::vector<Waypoint> way = {at(pinch, 0.15, 0, 40), at(pinch, kClothTable, 0, 30),
                                at(pinch, kClothTable, 1, 25)};
-  const double radius = diagonal / 2 - kPinch - kSlack;
+  const double radius = apart / 2 - kPinch - kSlack;
   for (const double degrees : {25, 55, 90, 125, 150}) {
     const double angle = Radians(degrees);
     way.push_back(at(middle - radius * std::cos(angle) * along,

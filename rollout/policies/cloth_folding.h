@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cloth folding: pinches the cloth beside one corner, lifts it and lays the corner onto another
-// one. The corners are the first pair of the task's success rule.
+// Cloth folding: pinches the cloth beside one place, lifts it and lays the place onto another one.
+// The places are the first pair of the task's success rule.
 #ifndef PHYSPRING_ROLLOUT_POLICIES_CLOTH_FOLDING_H_
 #define PHYSPRING_ROLLOUT_POLICIES_CLOTH_FOLDING_H_
 
