@@ -8,13 +8,15 @@
 
 namespace physpring {
 
-EffectEntries::EffectEntries(std::vector<EffectValues> start) : start_(std::move(start)) {
+EffectEntries::EffectEntries(std::vector<EffectValues> start, double unit)
+    : start_(std::move(start)) {
   for (const EffectValues& effect : start_) {
     const double* value = effect.values.data();
     for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
       const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
       for (int n = 0; n < parameter.count; ++n) {
-        entries_.push_back({*value++, parameter.low, parameter.high, parameter.scale, logarithmic});
+        entries_.push_back(
+            {*value++, parameter.low, parameter.high, unit * parameter.scale, logarithmic});
       }
     }
   }

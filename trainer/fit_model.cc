@@ -78,6 +78,16 @@ Candidate BendingChain(const Recording& recording, Candidate candidate) {
   return candidate;
 }
 
+// The last effects, those of a chain, are fitted: moments of its own shape in units of the one of
+// its friction, and its springs are all alike.
+void SetFreeEffects(const SpringMassSystem& base, int free_effects, ParameterOptions* options) {
+  options->free_effects = free_effects;
+  if (free_effects == 0) return;
+  options->length_classes = false;
+  const double friction = base.effects[base.effects.size() - 2].values[0];
+  options->effect_unit = friction / GetEffect("rest_bend").parameters()[0].scale;
+}
+
 }  // namespace
 
 std::string Candidate::Label() const {
@@ -137,8 +147,7 @@ Parameters CommonFactors(const SpringMassSystem& base, const Recording& recordin
   ParameterOptions options;
   options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = false;
   options.contact = recording.ground.has_value();
-  options.free_effects = free_effects;
-  options.length_classes = free_effects == 0;  // those of a chain are all alike
+  SetFreeEffects(base, free_effects, &options);
   return {base, options};
 }
 
@@ -147,8 +156,7 @@ Parameters SpringFactors(const SpringMassSystem& base, const Recording& recordin
   ParameterOptions options;
   options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = true;
   options.contact = recording.ground.has_value();
-  options.free_effects = free_effects;
-  options.length_classes = free_effects == 0;  // those of a chain are all alike
+  SetFreeEffects(base, free_effects, &options);
   return {base, options};
 }
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kMostCommonRecordings = 4;  // that common factors are fitted to
 constexpr int kStepsPerGain = 6;          // of common factors
-constexpr int kLastBendingSteps = 15;     // of a chain's, with the last gain
+constexpr int kFirstBendingGain = 2;      // of a chain's, which go on from those of the choice ...
+constexpr int kLastBendingSteps = 15;     // ... and have so many steps with the last gain
 constexpr int kFirstSpringGain = 3;       // of kObserverGains
 constexpr int kFollowedSteps = 3;         // of Gauss-Newton with each gain before the last ...
 constexpr int kGaussNewtonSteps = 15;     // ... and with that one
@@ -55,7 +56,11 @@ void FullFit::StepChoose() {
   state_.iteration = 0;
   state_.gain = 0;
   state_.damping = 1e-2;
-  model_.factors = model_.start;
+  if (model_.candidate.free_effects == 0) {
+    model_.factors = model_.start;
+  } else {
+    state_.gain = kFirstBendingGain;
+  }
 }
 
 // A chain that bends (fit_model.h) has no more than common factors: they get what single springs

@@ -31,7 +31,24 @@ constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground), and of the rigidity's (of a rod).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr std::array<double, 3> kRigidities = {0, -2, 2};
+constexpr double kRobust = 2;  // medians of the residuals, up to which their squares count
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double MedianSize(const Eigen::VectorXd& r) {
+  std::vector<double> size(static_cast<std::size_t>(r.size()));
+  std::transform(r.begin(), r.end(), size.begin(), [](double value) { return std::abs(value); });
+  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
+  std::nth_element(size.begin(), middle, size.end());
+  return *middle;
+}
+
+// Residuals whose squares are Huber's measure of r: r^2, and w (2 |r| - w) beyond w.
+Eigen::VectorXd Robust(const Eigen::VectorXd& r, double w) {
+  return r.unaryExpr([w](double value) {
+    const double size = std::abs(value);
+    return size <= w ? value : std::copysign(std::sqrt(w * (2 * size - w)), value);
+  });
+}
 
 // The factors that a search begins from.
 std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
@@ -68,8 +85,17 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   LevenbergMarquardtState state;
   state.x = model.factors;
   state.damping = damping;
-  return LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
-                                state, levenberg);
+  // a chain that is far off for a while would outweigh all others
+  double limit = kInfinity;
+  if (gain == 0 && model.candidate.free_effects > 0) {
+    if (const auto r = problem.Residuals(state.x)) limit = kRobust * MedianSize(*r);
+  }
+  const auto residuals = [&](const Eigen::VectorXd& x) {
+    auto r = problem.Residuals(x);
+    if (r && std::isfinite(limit)) r = Robust(*r, limit);
+    return r;
+  };
+  return LevenbergMarquardtStep(residuals, state, levenberg);
 }
 
 SpringMassSystem ChosenModel::System(const Recording& recording) const {
