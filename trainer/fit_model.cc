@@ -9,6 +9,7 @@
 #include "trainer/particle_mass.h"
 #include "trainer/spring_radius.h"
 #include "trainer/start_system.h"
+#include "twin/effects/registry.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -53,10 +54,44 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
   return counts;
 }
 
+// A chain of nodes that bends as a rod does: with stiffness, friction between its strands, and a
+// shape of its own, unless effects of bending are known. They start from what would matter to a rod
+// of this length l and weight m g, of rigidity kRigidity m g l^2, which slips where its curvature
+// is kSlip / l.
+Candidate BendingChain(const Recording& recording, Candidate candidate) {
+  candidate.neighbours = 2;
+  if (std::any_of(candidate.effects.begin(), candidate.effects.end(),
+                  [](const auto& effect) { return GetEffect(effect.name).bends(); })) {
+    return candidate;
+  }
+  constexpr double kRigidity = 3e-3, kSlip = 5;
+  const double length = recording.order.maxCoeff() - recording.order.minCoeff();
+  const double spacing = length / static_cast<double>(recording.order.size() - 1);
+  const double gravity = recording.gravity.norm() > 0 ? recording.gravity.norm() : 9.81;
+  const double rigidity = kRigidity * recording.mass * gravity * length * length;
+  candidate.effects.push_back({"bending", Eigen::VectorXd::Constant(1, rigidity)});
+  candidate.effects.push_back(
+      {"bending_friction", Eigen::Vector2d(rigidity * kSlip / length, kSlip / length * spacing)});
+  candidate.effects.push_back(
+      {"rest_bend", Eigen::VectorXd::Zero(GetEffect("rest_bend").value_count())});
+  candidate.free_effects = 3;
+  return candidate;
+}
+
+// The last effects, those of a chain, are fitted: moments of its own shape in units of the one of
+// its friction, and its springs are all alike.
+void SetFreeEffects(const SpringMassSystem& base, int free_effects, ParameterOptions* options) {
+  options->free_effects = free_effects;
+  if (free_effects == 0) return;
+  options->length_classes = false;
+  const double friction = base.effects[base.effects.size() - 2].values[0];
+  options->effect_unit = friction / GetEffect("rest_bend").parameters()[0].scale;
+}
+
 }  // namespace
 
 std::string Candidate::Label() const {
-  return fmt::format("{} neighbours{}{}", neighbours,
+  return fmt::format("{} neighbours{}{}{}", neighbours, free_effects > 0 ? " and bending" : "",
                      controller_velocity ? "" : ", controllers without velocity",
                      cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
 }
@@ -83,6 +118,9 @@ std::vector<Candidate> Candidates(const Recording& recording, const TrainOptions
       }
     }
   }
+  if (recording.order.size() > 0 && options.neighbours.empty()) {
+    candidates.push_back(BendingChain(recording, candidates[0]));
+  }
   return candidates;
 }
 
@@ -104,17 +142,21 @@ SpringMassSystem StartSystem(const Recording& recording, const Candidate& candid
   return system;
 }
 
-Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording) {
+Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording,
+                         int free_effects) {
   ParameterOptions options;
   options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = false;
   options.contact = recording.ground.has_value();
+  SetFreeEffects(base, free_effects, &options);
   return {base, options};
 }
 
-Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording) {
+Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording,
+                         int free_effects) {
   ParameterOptions options;
   options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = true;
   options.contact = recording.ground.has_value();
+  SetFreeEffects(base, free_effects, &options);
   return {base, options};
 }
 

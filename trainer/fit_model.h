@@ -16,7 +16,8 @@
 namespace physpring {
 
 // One model: which particles are joined, whether dashpots feel the controllers' velocity, the cone
-// of friction, and effects that are known.
+// of friction, and effects: those that are known, and of a rod, as one of its models, those of
+// bending, whose values are fitted like common factors.
 struct Candidate {
   int neighbours = 0;  // of an inner particle, about
   double radius = 0;   // m, that gives them (not used along rods)
@@ -24,6 +25,7 @@ struct Candidate {
   FrictionCone cone = FrictionCone::kElliptic;
   std::vector<EffectValues> effects = {};
   Eigen::VectorXd mass = {};  // kg, of each particle; empty: all alike
+  int free_effects = 0;       // so many effects, the last ones, are fitted
 
   std::string Label() const;
 };
@@ -39,11 +41,14 @@ constexpr double kSoftestStart = 2, kStiffestStart = 64;
 SpringMassSystem StartSystem(const Recording& recording, const Candidate& candidate,
                              double start_substeps);
 
-// The factors that all springs share (parameters.h), those of the ground where there is one.
-Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording);
+// The factors that all springs share (parameters.h), those of the ground where there is one, and
+// the values of the last `free_effects` effects.
+Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording,
+                         int free_effects = 0);
 
 // The same factors and every spring's own stiffness, dashpot and rest length, and their prior.
-Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording);
+Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording,
+                         int free_effects = 0);
 GaussNewtonOptions SpringPrior(const Parameters& parameters);
 constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
 

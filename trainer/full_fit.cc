@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kMostCommonRecordings = 4;  // that common factors are fitted to
 constexpr int kStepsPerGain = 6;          // of common factors
+constexpr int kFirstBendingGain = 2;      // of a chain's, which go on from those of the choice ...
+constexpr int kLastBendingSteps = 15;     // ... and have so many steps with the last gain
 constexpr int kFirstSpringGain = 3;       // of kObserverGains
 constexpr int kFollowedSteps = 3;         // of Gauss-Newton with each gain before the last ...
 constexpr int kGaussNewtonSteps = 15;     // ... and with that one
@@ -34,7 +36,7 @@ FullFit::FullFit(FitData data, const TrainOptions& options)
       all_(FitEpisodes(data_, kMostSpringRecordings)) {}
 
 Parameters FullFit::SpringParameters() const {
-  return SpringFactors(model_.System(first()), first());
+  return SpringFactors(model_.System(first()), first(), model_.candidate.free_effects);
 }
 
 SpringMassSystem FullFit::CurrentSystem() const {
@@ -54,22 +56,35 @@ void FullFit::StepChoose() {
   state_.iteration = 0;
   state_.gain = 0;
   state_.damping = 1e-2;
-  model_.factors = model_.start;
+  if (model_.candidate.free_effects == 0) {
+    model_.factors = model_.start;
+  } else {
+    state_.gain = kFirstBendingGain;
+  }
 }
 
+// A chain that bends (fit_model.h) has no more than common factors: they get what single springs
+// would get, more recordings and more steps with the last gain.
 void FullFit::StepCommon() {
+  const bool chain = model_.candidate.free_effects > 0, last = chain && state_.gain == kLastGain;
   const LevenbergMarquardtState factors =
-      StepFactors(model_, FitEpisodes(data_, kMostCommonRecordings), options_,
+      StepFactors(model_, last ? all_ : FitEpisodes(data_, kMostCommonRecordings), options_,
                   kObserverGains[state_.gain], state_.damping);
   model_.factors = factors.x;
   state_.damping = factors.damping;
   state_.mean_square = factors.mean_square;
   status_ = fmt::format("{}, all fit frames: {:.3f} mm", model_.candidate.Label(),
                         PointMillimetres(factors.mean_square));
-  if (++state_.iteration < kStepsPerGain && !factors.converged) return;
+  const int steps = last ? kLastBendingSteps : kStepsPerGain;
+  if (++state_.iteration < steps && !factors.converged) return;
   state_.iteration = 0;
   state_.damping = 1e-2;
   if (++state_.gain <= kLastGain) return;
+  if (chain) {
+    state_.x = state_.best = Eigen::VectorXd::Zero(SpringParameters().size());
+    state_.stage = Stage::kDone;
+    return;
+  }
   state_.stage = Stage::kGaussNewton;
   state_.gain = kFirstSpringGain;
   state_.x = Eigen::VectorXd::Zero(SpringParameters().size());

@@ -5,6 +5,7 @@
 //                 observer whose gain falls to 0 (observer.h)
 //   Gauss-Newton  every spring's own stiffness, dashpot and rest length, while it gets on; so, too
 //   Adam          goes on where contacts or chaotic motions make residuals too rough for that
+// A chain that bends (fit_model.h) ends with its common factors, fitted to more recordings.
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FULL_FIT_H_

@@ -11,6 +11,7 @@
 #include "trainer/reduction/galerkin.h"
 #include "trainer/reduction/gramian.h"
 #include "twin/error.h"
+#include "twin/hierarchy.h"
 
 namespace physpring {
 namespace {
@@ -100,6 +101,7 @@ Twin HierarchyFit::WithNextLevel(const std::vector<int>& assignment) const {
   twin.levels.push_back(
       {Project(twin_.levels.back().system, assignment, Up(data_.recordings[0])).system, assignment,
        0});
+  SpreadOrder(&twin);
   return twin;
 }
 

@@ -70,7 +70,7 @@ Eigen::VectorXd LiftedProblem::JacobianTransposedTimes(const Eigen::VectorXd& u)
     bars[e][frame].col(i) = u.segment<3>(row);
     row += 3;
   });
-  return parameters_.Adjoint(system_, motion_.Adjoint(system_, *at_, bars, &cuts_));
+  return parameters_.Adjoint(x_, system_, motion_.Adjoint(system_, *at_, bars, &cuts_));
 }
 
 }  // namespace physpring

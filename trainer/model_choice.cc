@@ -28,9 +28,43 @@ struct Round {
 constexpr std::array<Round, 3> kRounds = {{{0, 1, 5, 3}, {2, 3, 6, 1}, {3, 3, 6, 1}}};
 constexpr int kRoundCount = static_cast<int>(kRounds.size());
 constexpr int kChoiceConjugateGradients = 20;
-// Changes of the friction's factor that are tried (on a ground).
+// Changes of the friction's factor that are tried (on a ground), and of the rigidity's (of a rod).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
+constexpr std::array<double, 3> kRigidities = {0, -2, 2};
+constexpr double kRobust = 2;  // medians of the residuals, up to which their squares count
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double MedianSize(const Eigen::VectorXd& r) {
+  std::vector<double> size(static_cast<std::size_t>(r.size()));
+  std::transform(r.begin(), r.end(), size.begin(), [](double value) { return std::abs(value); });
+  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
+  std::nth_element(size.begin(), middle, size.end());
+  return *middle;
+}
+
+// Residuals whose squares are Huber's measure of r: r^2, and w (2 |r| - w) beyond w.
+Eigen::VectorXd Robust(const Eigen::VectorXd& r, double w) {
+  return r.unaryExpr([w](double value) {
+    const double size = std::abs(value);
+    return size <= w ? value : std::copysign(std::sqrt(w * (2 * size - w)), value);
+  });
+}
+
+// The factors that a search begins from.
+std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
+  std::vector<Eigen::VectorXd> starts;
+  for (double friction : kFrictions) {
+    for (double rigidity : kRigidities) {
+      if (factors.friction() < 0 && friction != 0) continue;
+      if (factors.effect_count() == 0 && rigidity != 0) continue;
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
+      if (factors.friction() >= 0) x[factors.friction()] = friction;
+      if (factors.effect_count() > 0) x[factors.effects()] = x[factors.effects() + 1] = rigidity;
+      starts.push_back(x);
+    }
+  }
+  return starts;
+}
 
 }  // namespace
 
@@ -39,10 +73,11 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   const Recording& recording = *episodes.at(0).recording;
   TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
   follow.threads = 1;  // the differences run in parallel
-  follow.most_substeps /= 2;
+  if (model.candidate.free_effects == 0) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
   const Parameters factors =
-      CommonFactors(StartSystem(recording, model.candidate, model.start_substeps), recording);
+      CommonFactors(StartSystem(recording, model.candidate, model.start_substeps), recording,
+                    model.candidate.free_effects);
   TrackProblem problem(factors, episodes, follow);
   LevenbergMarquardtOptions levenberg;
   levenberg.threads = options.threads;
@@ -50,12 +85,23 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   LevenbergMarquardtState state;
   state.x = model.factors;
   state.damping = damping;
-  return LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
-                                state, levenberg);
+  // a chain that is far off for a while would outweigh all others
+  double limit = kInfinity;
+  if (gain == 0 && model.candidate.free_effects > 0) {
+    if (const auto r = problem.Residuals(state.x)) limit = kRobust * MedianSize(*r);
+  }
+  const auto residuals = [&](const Eigen::VectorXd& x) {
+    auto r = problem.Residuals(x);
+    if (r && std::isfinite(limit)) r = Robust(*r, limit);
+    return r;
+  };
+  return LevenbergMarquardtStep(residuals, state, levenberg);
 }
 
 SpringMassSystem ChosenModel::System(const Recording& recording) const {
-  return CommonFactors(StartSystem(recording, candidate, start_substeps), recording).Apply(factors);
+  return CommonFactors(StartSystem(recording, candidate, start_substeps), recording,
+                       candidate.free_effects)
+      .Apply(factors);
 }
 
 ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
@@ -74,16 +120,13 @@ ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
 void ModelChoice::SearchStart(ChosenModel* model) const {
   double least = kInfinity;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
-    const Parameters factors =
-        CommonFactors(StartSystem(first(), model->candidate, substeps), first());
+    const Parameters factors = CommonFactors(StartSystem(first(), model->candidate, substeps),
+                                             first(), model->candidate.free_effects);
     TrackProblem::Options follow = FollowOptions(first(), model->candidate, options_);
     follow.rollout.observer_gain = kObserverGains[0];
     TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
-    for (double friction : kFrictions) {
-      Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
-      if (factors.friction() >= 0) x[factors.friction()] = friction;
+    for (const Eigen::VectorXd& x : Starts(factors)) {
       if (model->start_substeps == 0) *model = {model->candidate, substeps, x, x};
-      if (factors.friction() < 0 && friction != 0) continue;
       const auto r = problem.Residuals(x);
       if (!r || r->squaredNorm() >= least) continue;
       least = r->squaredNorm();
@@ -113,7 +156,7 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
 
 bool ModelChoice::Step() {
   if (round_ == kRoundCount) return false;
-  if (round_ < kRoundCount - 1) {
+  if (round_ < kRoundCount - 1 || Current().model.candidate.free_effects > 0) {
     StepCommonFactors();
   } else {
     StepSprings();
@@ -139,7 +182,8 @@ void ModelChoice::StepCommonFactors() {
 
 void ModelChoice::StepSprings() {
   const ChosenModel& model = Current().model;
-  const Parameters parameters = SpringFactors(model.System(first()), first());
+  const Parameters parameters =
+      SpringFactors(model.System(first()), first(), model.candidate.free_effects);
   if (iteration_ == 0) {
     springs_ = Eigen::VectorXd::Zero(parameters.size());
     damping_ = 1e-3;

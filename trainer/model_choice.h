@@ -6,7 +6,7 @@
 //            velocity go on
 //   near     those are fitted with lower gains; the best with and without velocity go on
 //   springs  those are fitted a few steps further, spring by spring, with the same low gain, and
-//            judged by a free motion as well
+//            judged by a free motion as well; a chain that bends (fit_model.h) by its factors
 #ifndef PHYSPRING_TRAINER_MODEL_CHOICE_H_
 #define PHYSPRING_TRAINER_MODEL_CHOICE_H_
 

@@ -34,16 +34,23 @@ std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
   return length_class;
 }
 
+std::vector<EffectValues> LastEffects(const SpringMassSystem& system, int count) {
+  return {system.effects.end() - count, system.effects.end()};
+}
+
 }  // namespace
 
 Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& options)
     : base_(base),
       options_(options),
+      effects_(LastEffects(base, options.free_effects), options.effect_unit),
       springs_(base.spring_count()),
-      length_class_(LengthClasses(base.rest_length)),
+      length_class_(options.length_classes ? LengthClasses(base.rest_length)
+                                           : std::vector<int>(springs_, 0)),
       classes_(options.contact ? kFriction + 1 : kDrag + 1),
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
-      size_(classes_ + 2 * class_count_) {
+      effects_at_(classes_ + 2 * class_count_),
+      size_(effects_at_ + effects_.size()) {
   const auto add = [this](bool wanted, int* offset) {
     if (!wanted) return;
     *offset = size_;
@@ -86,10 +93,13 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
         Sigmoid(Logit(base_.contact.restitution, 1) + values[kRestitution], 1);
     system.contact.friction = Sigmoid(Logit(base_.contact.friction, 2) + values[kFriction], 2);
   }
+  const std::vector<EffectValues> moved =
+      effects_.Apply(values.segment(effects_at_, effects_.size()));
+  std::copy(moved.begin(), moved.end(), system.effects.end() - options_.free_effects);
   return system;
 }
 
-Eigen::VectorXd Parameters::Adjoint(const SpringMassSystem& system,
+Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringMassSystem& system,
                                     const SystemGradient& gradient) const {
   Eigen::VectorXd bar = Eigen::VectorXd::Zero(size_);
   for (int e = 0; e < springs_; ++e) {
@@ -116,6 +126,9 @@ Eigen::VectorXd Parameters::Adjoint(const SpringMassSystem& system,
     bar[kRestitution] = surface.restitution * e * (1 - e);
     bar[kFriction] = surface.friction * mu * (1 - mu / 2);
   }
+  bar.segment(effects_at_, effects_.size()) =
+      effects_.Adjoint(values.segment(effects_at_, effects_.size()),
+                       {gradient.effects.end() - options_.free_effects, gradient.effects.end()});
   return bar;
 }
 

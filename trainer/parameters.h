@@ -5,6 +5,7 @@
 //   rest_length_e = base_e exp(own_e)
 //   drag          = base exp(.)
 //   restitution   = 1 / (1 + exp(-.)),  friction = 2 / (1 + exp(-.))
+//   values of the base's last effects: effect_entries.h
 // Zero is the base system. Springs of about the same rest length are one class: on a regular mesh
 // the springs along, across and diagonal, which in a homogeneous body are alike. The `own` parts
 // are deviations of single springs, held small by the prior.
@@ -13,6 +14,7 @@
 
 #include <vector>
 
+#include "trainer/effect_entries.h"
 #include "twin/simulator.h"
 #include "twin/spring_mass_system.h"
 
@@ -22,7 +24,10 @@ struct ParameterOptions {
   bool spring_stiffness = true;  // single springs, else one factor for all
   bool spring_dashpot = true;    // single dashpots, else one factor for all
   bool spring_rest_length = false;
-  bool contact = false;  // restitution and friction of the ground
+  bool contact = false;        // restitution and friction of the ground
+  int free_effects = 0;        // so many of the base's effects, the last ones; the others stay
+  double effect_unit = 1;      // of those that move evenly (effect_entries.h)
+  bool length_classes = true;  // else all springs are of one class
 };
 
 class Parameters {
@@ -31,16 +36,21 @@ class Parameters {
 
   int size() const { return size_; }
   const SpringMassSystem& base() const { return base_; }
-  // What each entry is: 0 global, 1 own stiffness, 2 own dashpot, 3 own rest length.
+  // What each entry is: 0 global (effects' values, too), 1 own stiffness, 2 own dashpot, 3 own rest
+  // length.
   enum class Kind { kGlobal, kStiffness, kDashpot, kRestLength };
   Kind kind(int i) const;
   // The entry of the ground's friction; -1: none.
   int friction() const { return options_.contact ? kFriction : -1; }
+  // The first entry of the effects' values, and how many there are.
+  int effects() const { return effects_at_; }
+  int effect_count() const { return effects_.size(); }
 
   SpringMassSystem Apply(const Eigen::VectorXd& values) const;
 
-  // d loss / d values, from the derivatives with respect to the system Apply(values).
-  Eigen::VectorXd Adjoint(const SpringMassSystem& system, const SystemGradient& gradient) const;
+  // d loss / d values, from the derivatives with respect to `system`, which is Apply(values).
+  Eigen::VectorXd Adjoint(const Eigen::VectorXd& values, const SpringMassSystem& system,
+                          const SystemGradient& gradient) const;
 
  private:
   bool IsControllerSpring(int e) const;
@@ -49,10 +59,12 @@ class Parameters {
 
   SpringMassSystem base_;
   ParameterOptions options_;
+  EffectEntries effects_;  // those that are free
   int springs_;
   std::vector<int> length_class_;                         // of each spring
   int classes_;                                           // offset of the classes' stiffness ...
   int class_count_;                                       // ... and dashpot after it
+  int effects_at_;                                        // offset of the effects' values
   int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
   int size_;
   // offsets of the global parts; restitution and friction only where wanted

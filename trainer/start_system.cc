@@ -69,6 +69,7 @@ SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptio
   const int nodes = recording.particle_count();
   system.position = recording.rest;
   system.controllers = recording.controller_count();
+  system.order = recording.order;
   system.mass = Eigen::VectorXd::Constant(nodes, recording.mass / nodes);
   system.springs =
       BuildSprings(recording.rest, system.controllers, recording.order, topology, recording.name);

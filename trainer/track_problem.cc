@@ -110,7 +110,7 @@ Eigen::VectorXd TrackProblem::JacobianTransposedTimes(const Eigen::VectorXd& u) 
     sum += adjoint->gradient;
     cuts_ += adjoint->cuts;
   }
-  return parameters_.Adjoint(system_, sum);
+  return parameters_.Adjoint(x_, system_, sum);
 }
 
 }  // namespace physpring

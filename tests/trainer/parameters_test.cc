@@ -71,7 +71,7 @@ TEST_P(ParametersAdjoint, AgreesWithDifferences) {
   Random random(7);
   Eigen::VectorXd values = Uniform(parameters.size(), 0.5, &random);
   const SystemGradient weights = RandomWeights(base);
-  const Eigen::VectorXd bar = parameters.Adjoint(parameters.Apply(values), weights);
+  const Eigen::VectorXd bar = parameters.Adjoint(values, parameters.Apply(values), weights);
   ASSERT_EQ(bar.size(), parameters.size());
   std::vector<CheckedVariable> variables;
   for (int i = 0; i < parameters.size(); ++i) {
@@ -81,6 +81,47 @@ TEST_P(ParametersAdjoint, AgreesWithDifferences) {
   const GradientReport report = CheckGradient(loss, variables);
   EXPECT_TRUE(report.passed) << report.log;
   EXPECT_LE(report.worst_error, 1e-6);
+}
+
+// Of three effects the last two are free: their values move within bounds, the first one's do not.
+TEST(Parameters, LastEffectsHaveTheDerivativesThatDifferencesShow) {
+  SpringMassSystem base = RandomSystem(10, 2, 3);
+  base.effects = {{"stiffening", Eigen::VectorXd::Constant(1, 3)},
+                  {"bending_friction", Eigen::Vector2d(1e-3, 0.9)},
+                  {"gravity_direction", Eigen::Vector2d(0.1, 0)}};
+  ParameterOptions options = kCommon;
+  options.free_effects = 2;
+  const Parameters parameters(base, options);
+  ASSERT_EQ(parameters.effect_count(), 4);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(parameters.size());
+  values.tail(4) << 0.3, 0.5, -0.2, 0.4;  // the second one is beyond its bound
+  SystemGradient weights(base);
+  weights.effects = {Eigen::VectorXd::Constant(1, 7), Eigen::Vector2d(2000, 5),
+                     Eigen::Vector2d(-3, 4)};
+  const SpringMassSystem system = parameters.Apply(values);
+  EXPECT_EQ(system.effects[0].values[0], 3);
+  EXPECT_EQ(system.effects[1].values[1], 1);
+  const Eigen::VectorXd bar = parameters.Adjoint(values, system, weights);
+  const auto loss = [&] {
+    long double sum = 0;
+    const SpringMassSystem at = parameters.Apply(values);
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum += static_cast<long double>(weights.effects[i].dot(at.effects[i].values));
+    }
+    return sum;
+  };
+  std::vector<CheckedVariable> variables;
+  for (int i = parameters.effects(); i < parameters.size(); ++i) {
+    variables.push_back({"value " + std::to_string(i), &values[i], 1e-2, bar[i]});
+  }
+  const GradientReport report = CheckGradient(loss, variables);
+  EXPECT_TRUE(report.passed) << report.log;
+}
+
+TEST(Parameters, SpringsWithoutClassesHaveOne) {
+  ParameterOptions options = kCommon;
+  options.length_classes = false;
+  EXPECT_EQ(Parameters(Chain({0.01, 0.02, 0.03}), options).size(), 5 + 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, ParametersAdjoint,

@@ -33,6 +33,12 @@ TEST(StartSystem, MassesSumToTheRecordings) {
   EXPECT_NO_THROW(system.Validate("start"));
 }
 
+TEST(StartSystem, RodKnowsItsArcLengths) {
+  Recording recording = SwungRope(8, 2);
+  recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
+  EXPECT_EQ(MakeStartSystem(recording, {}).order, recording.order);
+}
+
 TEST(StartSystem, SpringsAreStressFreeAndOfTheSameAxialStiffness) {
   Recording recording = SwungRope(8, 2);
   recording.rest *= 0.9;

@@ -58,6 +58,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   for (const Candidate& candidate : Candidates(shaped, options)) {
     SpringMassSystem system = StartSystem(shaped, candidate, kStart);
     system.mass = own.base.mass;
+    system.effects.clear();
     const auto known = std::find_if(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
       return body.controller_velocity == candidate.controller_velocity &&
              body.base.springs == system.springs;

@@ -2,9 +2,8 @@
 // What a diagnosis moves: an unconstrained vector, and the map from it to a spring-mass system with
 // effects. First the model's own parameters (parameters.h), then the values of the effects, one
 // after the other:
-//   own:          limit tanh(scale x / limit), or scale x without a limit
-//   even:         value = start + scale x, within the parameter's bounds
-//   logarithmic:  value = start exp(x), within the bounds
+//   own:      limit tanh(scale x / limit), or scale x without a limit
+//   effects:  effect_entries.h
 // Zero is the base system with the effects at their start.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
@@ -12,9 +11,9 @@
 #include <limits>
 #include <vector>
 
+#include "trainer/effect_entries.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/parameters.h"
-#include "twin/effects/effect.h"
 
 namespace physpring {
 
@@ -31,7 +30,7 @@ class EffectModel {
   // The base system of `own` must have no effects itself.
   EffectModel(Parameters own, OwnRange range, std::vector<EffectValues> start);
 
-  int size() const { return own_.size() + effect_size_; }
+  int size() const { return own_.size() + effects_.size(); }
   const Parameters& own() const { return own_; }
 
   SpringMassSystem Apply(const Eigen::VectorXd& x) const;
@@ -41,18 +40,11 @@ class EffectModel {
                           const SystemGradient& gradient) const;
 
  private:
-  struct Entry {
-    double low, high, scale;
-    bool logarithmic;
-  };
   Eigen::VectorXd OwnValues(const Eigen::VectorXd& x) const;
-  static double Value(const Entry& entry, double start, double x);
 
   Parameters own_;
   OwnRange range_;
-  std::vector<EffectValues> start_;
-  std::vector<Entry> entries_;  // of all effects
-  int effect_size_;
+  EffectEntries effects_;
 };
 
 }  // namespace physpring

@@ -49,42 +49,70 @@ struct Bent {
 
 void BendEffectForce::Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd> internal,
                           Points* force) const {
-  for (int i = 0; i < static_cast<int>(triples_.size()); ++i) {
-    const BendingTriple& triple = triples_[i];
-    const Bent bent(instant, triple);
-    Vector z = Vector::Zero();
-    if (has_internal()) z = internal.segment<3>(3 * i);
-    const Vector moment = Moment(i, bent.bend, instant.step, &z);
-    if (has_internal()) internal.segment<3>(3 * i) = z;
-    const Vector on_p = bent.p.Across(moment), on_q = bent.q.Across(moment);
-    force->col(triple.a) -= on_p;
-    force->col(triple.b) += on_p + on_q;
-    force->col(triple.c) -= on_q;
-  }
+  AddBendForces({{this, 0}}, instant, internal, force);
 }
 
 void BendEffectForce::AddAdjoint(const Instant& instant,
                                  const Eigen::Ref<const Eigen::VectorXd>& internal,
                                  const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
                                  InstantGradient* gradient) const {
-  for (int i = 0; i < static_cast<int>(triples_.size()); ++i) {
-    const auto [a, b, c, length] = triples_[i];
-    const Bent bent(instant, triples_[i]);
-    Vector z = Vector::Zero(), z_bar = Vector::Zero();
-    if (has_internal()) {
-      z = internal.segment<3>(3 * i);
-      z_bar = internal_bar.segment<3>(3 * i);
-    }
-    Vector z_after = z;
-    const Vector moment = Moment(i, bent.bend, instant.step, &z_after);
+  AddBendForcesAdjoint({{this, 0}}, instant, internal, force_bar, internal_bar, &gradient->x,
+                       &gradient->v, {&gradient->values});
+}
 
+void AddBendForces(const std::vector<BendLaw>& laws, const Instant& instant,
+                   Eigen::Ref<Eigen::VectorXd> internal, Points* force) {
+  const std::vector<BendingTriple>& triples = laws[0].force->triples_;
+  for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
+    const BendingTriple& triple = triples[i];
+    const Bent bent(instant, triple);
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero(), none;
+    for (const BendLaw& law : laws) {
+      double* z = law.force->has_internal() ? internal.data() + law.internal + 3 * i : nullptr;
+      Eigen::Vector3d variables = z ? Eigen::Vector3d(Eigen::Map<Eigen::Vector3d>(z)) : none;
+      moment += law.force->Moment(i, bent.bend, instant.step, &variables);
+      if (z) Eigen::Map<Eigen::Vector3d>{z} = variables;
+    }
+    const Eigen::Vector3d on_p = bent.p.Across(moment), on_q = bent.q.Across(moment);
+    force->col(triple.a) -= on_p;
+    force->col(triple.b) += on_p + on_q;
+    force->col(triple.c) -= on_q;
+  }
+}
+
+void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& instant,
+                          const Eigen::Ref<const Eigen::VectorXd>& internal,
+                          const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
+                          Points* x_bar, Points* v_bar,
+                          const std::vector<Eigen::VectorXd*>& values_bar) {
+  using Vector = Eigen::Vector3d;
+  const std::vector<BendingTriple>& triples = laws[0].force->triples_;
+  for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
+    const auto [a, b, c, length] = triples[i];
+    const Bent bent(instant, triples[i]);
     // forward: f_a -= G(p, M), f_b += G(p, M) + G(q, M), f_c -= G(q, M)
-    Vector moment_bar = Vector::Zero(), p_bar = Vector::Zero(), q_bar = Vector::Zero();
-    bent.p.AcrossAdjoint(moment, force_bar.col(b) - force_bar.col(a), &moment_bar, &p_bar);
-    bent.q.AcrossAdjoint(moment, force_bar.col(b) - force_bar.col(c), &moment_bar, &q_bar);
+    const Vector on_p_bar = force_bar.col(b) - force_bar.col(a);
+    const Vector on_q_bar = force_bar.col(b) - force_bar.col(c);
+    const Vector moment_bar = bent.p.Across(on_p_bar) + bent.q.Across(on_q_bar);
+    Vector moment = Vector::Zero();
     Bend bar;
-    MomentAdjoint(i, bent.bend, instant.step, z, moment_bar, &z_bar, &bar, &gradient->values);
-    if (has_internal()) internal_bar.segment<3>(3 * i) = z_bar;
+    for (std::size_t n = 0; n < laws.size(); ++n) {
+      const bool has_internal = laws[n].force->has_internal();
+      const int at = laws[n].internal + 3 * i;
+      Vector z = Vector::Zero(), z_bar = Vector::Zero();
+      if (has_internal) {
+        z = internal.segment<3>(at);
+        z_bar = internal_bar.segment<3>(at);
+      }
+      Vector z_after = z;
+      moment += laws[n].force->Moment(i, bent.bend, instant.step, &z_after);
+      laws[n].force->MomentAdjoint(i, bent.bend, instant.step, z, moment_bar, &z_bar, &bar,
+                                   values_bar[n]);
+      if (has_internal) internal_bar.segment<3>(at) = z_bar;
+    }
+    Vector unused = Vector::Zero(), p_bar = Vector::Zero(), q_bar = Vector::Zero();
+    bent.p.AcrossAdjoint(moment, on_p_bar, &unused, &p_bar);
+    bent.q.AcrossAdjoint(moment, on_q_bar, &unused, &q_bar);
 
     // forward: rate = G(q, w) - G(p, u)
     Vector u_bar = Vector::Zero(), w_bar = Vector::Zero();
@@ -93,12 +121,12 @@ void BendEffectForce::AddAdjoint(const Instant& instant,
     // forward: kappa = t - s, tangent = s
     p_bar += bent.p.Across(bar.tangent - bar.bend);
     q_bar += bent.q.Across(bar.bend);
-    gradient->x.col(a) -= p_bar;
-    gradient->x.col(b) += p_bar - q_bar;
-    gradient->x.col(c) += q_bar;
-    gradient->v.col(a) -= u_bar;
-    gradient->v.col(b) += u_bar - w_bar;
-    gradient->v.col(c) += w_bar;
+    x_bar->col(a) -= p_bar;
+    x_bar->col(b) += p_bar - q_bar;
+    x_bar->col(c) += q_bar;
+    v_bar->col(a) -= u_bar;
+    v_bar->col(b) += u_bar - w_bar;
+    v_bar->col(c) += w_bar;
   }
 }
 

@@ -9,6 +9,8 @@
 #ifndef PHYSPRING_TWIN_EFFECTS_BEND_EFFECT_H_
 #define PHYSPRING_TWIN_EFFECTS_BEND_EFFECT_H_
 
+#include <vector>
+
 #include "twin/effects/bending_triples.h"
 #include "twin/effects/effect.h"
 
@@ -20,6 +22,25 @@ struct Bend {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();     // of change of kappa, 1/s
   Eigen::Vector3d tangent = Eigen::Vector3d::Zero();  // s
 };
+
+class BendEffectForce;
+
+// One of several laws that act on the same triples, and where its internal variables begin.
+struct BendLaw {
+  const BendEffectForce* force;
+  int internal;
+};
+
+// The forces of all laws at once (at least one): the geometry of a triple, which takes most of the
+// time, is worked out once for all. See EffectForce.
+void AddBendForces(const std::vector<BendLaw>& laws, const Instant& instant,
+                   Eigen::Ref<Eigen::VectorXd> internal, Points* force);
+// values_bar: of each law, d loss / d its values. Adds to them, x_bar and v_bar.
+void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& instant,
+                          const Eigen::Ref<const Eigen::VectorXd>& internal,
+                          const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
+                          Points* x_bar, Points* v_bar,
+                          const std::vector<Eigen::VectorXd*>& values_bar);
 
 class BendEffectForce : public EffectForce {
  public:
@@ -37,6 +58,13 @@ class BendEffectForce : public EffectForce {
 
  protected:
   using Vector = Eigen::Vector3d;
+
+  friend void AddBendForces(const std::vector<BendLaw>&, const Instant&,
+                            Eigen::Ref<Eigen::VectorXd>, Points*);
+  friend void AddBendForcesAdjoint(const std::vector<BendLaw>&, const Instant&,
+                                   const Eigen::Ref<const Eigen::VectorXd>&, const Points&,
+                                   Eigen::Ref<Eigen::VectorXd>, Points*, Points*,
+                                   const std::vector<Eigen::VectorXd*>&);
 
   virtual bool has_internal() const { return false; }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "twin/effects/bend_effect.h"
 #include "twin/effects/effect.h"
 
 namespace physpring {
@@ -43,10 +44,14 @@ class EffectSet {
   void ChangeAdjoint(double delay_bar, SystemGradient* gradient) const;
 
  private:
+  bool IsBend(std::size_t i) const;
+
   std::vector<const Effect*> effects_;
   std::vector<Setting> settings_;  // before the first effect, between them, after the last
   std::vector<std::unique_ptr<EffectForce>> forces_;  // of each effect; null: none
-  std::vector<int> offset_;  // of each effect's internal variables; the last one: their number
+  std::vector<int> offset_;     // of each effect's internal variables; the last one: their number
+  std::vector<BendLaw> bends_;  // those of forces_ that are of bending ...
+  std::vector<std::size_t> bend_;  // ... and which they are
 };
 
 }  // namespace physpring

@@ -157,6 +157,28 @@ TEST_P(Effects, ComesBackFromJson) {
   EXPECT_EQ(read[1].values, effect.values);
 }
 
+// Laws of bending share the geometry of their triples.
+TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
+  TargetedRollout rollout = RandomRollout(4, 1);
+  rollout.system.order = Eigen::VectorXd::LinSpaced(27, 0, 0.5);
+  for (const char* name : {"bending_friction", "rest_bend", "bending", "bending_damping"}) {
+    rollout.system.effects.push_back(Values(GetEffect(name), Cases().at(name).values));
+  }
+  const RolloutGradient gradient = Gradient<double>(rollout);
+  std::vector<CheckedVariable> variables;
+  for (std::size_t i = 0; i < rollout.system.effects.size(); ++i) {
+    EffectValues& effect = rollout.system.effects[i];
+    for (Eigen::Index j = 0; j < effect.values.size(); ++j) {
+      const double scale = effect.name == "rest_bend" ? 1e-3 : effect.values[j];
+      variables.push_back({effect.name + " " + std::to_string(j), &effect.values[j],
+                           kKinked * scale, gradient.system.effects[i][j]});
+    }
+  }
+  const auto loss = [&] { return Loss<double>(rollout); };
+  const GradientReport report = CheckGradient(loss, variables);
+  EXPECT_TRUE(report.passed) << report.log;
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Effects, testing::ValuesIn(AllEffects()),
                          [](const auto& test) { return test.param->name(); });
 
