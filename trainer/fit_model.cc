@@ -54,38 +54,55 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
   return counts;
 }
 
-// A chain of nodes that bends as a rod does: with stiffness, friction between its strands, and a
-// shape of its own, unless effects of bending are known. They start from what would matter to a rod
-// of this length l and weight m g, of rigidity kRigidity m g l^2, which slips where its curvature
-// is kSlip / l.
+// Part of the most sub-steps that damping of bending may take.
+constexpr double kDampedPart = 0.3;
+
+// Where the curvature of a rod of length l that slips begins to matter, kSlip / l.
+constexpr double kSlip = 5;
+
+double RodLength(const Eigen::VectorXd& order) { return order.maxCoeff() - order.minCoeff(); }
+
+// A chain of nodes that bends as a rod does: with stiffness, damping, friction between its strands,
+// and a shape of its own, unless effects of bending are known. They start from what would matter to
+// a rod of this length l and weight m g: of rigidity kRigidity m g l^2, which its damping relaxes
+// in kDamped (l / g)^1/2, and with kFriction of its moment at the curvature where it slips.
 Candidate BendingChain(const Recording& recording, Candidate candidate) {
   candidate.neighbours = 2;
   if (std::any_of(candidate.effects.begin(), candidate.effects.end(),
                   [](const auto& effect) { return GetEffect(effect.name).bends(); })) {
     return candidate;
   }
-  constexpr double kRigidity = 3e-3, kSlip = 5;
-  const double length = recording.order.maxCoeff() - recording.order.minCoeff();
+  constexpr double kRigidity = 3e-3, kDamped = 3e-3, kFriction = 0.3;
+  const double length = RodLength(recording.order);
   const double spacing = length / static_cast<double>(recording.order.size() - 1);
   const double gravity = recording.gravity.norm() > 0 ? recording.gravity.norm() : 9.81;
   const double rigidity = kRigidity * recording.mass * gravity * length * length;
+  const double damping = kDamped * std::sqrt(length / gravity) * rigidity;
+  const double friction = kFriction * rigidity * kSlip / length;
   candidate.effects.push_back({"bending", Eigen::VectorXd::Constant(1, rigidity)});
+  candidate.effects.push_back({"bending_damping", Eigen::VectorXd::Constant(1, damping)});
   candidate.effects.push_back(
-      {"bending_friction", Eigen::Vector2d(rigidity * kSlip / length, kSlip / length * spacing)});
+      {"bending_friction", Eigen::Vector2d(friction, kSlip / length * spacing)});
   candidate.effects.push_back(
       {"rest_bend", Eigen::VectorXd::Zero(GetEffect("rest_bend").value_count())});
-  candidate.free_effects = 3;
+  candidate.free_effects = 4;
   return candidate;
 }
 
-// The last effects, those of a chain, are fitted: moments of its own shape in units of the one of
-// its friction, and its springs are all alike.
+// The last effects, those of a chain, are fitted: the moments of its own shape in units of the one
+// with which its stiffness answers to the curvature where it slips. Its springs are all alike, and
+// how they are damped along it hardly matters: fitted, that would ask for all sub-steps there are.
 void SetFreeEffects(const SpringMassSystem& base, int free_effects, ParameterOptions* options) {
   options->free_effects = free_effects;
   if (free_effects == 0) return;
-  options->length_classes = false;
-  const double friction = base.effects[base.effects.size() - 2].values[0];
-  options->effect_unit = friction / GetEffect("rest_bend").parameters()[0].scale;
+  options->length_classes = options->dashpots = false;
+  const EffectValues& bending = *(base.effects.end() - free_effects);
+  const double moment = bending.values[0] * kSlip / RodLength(base.order);
+  options->effect_unit = moment / GetEffect("rest_bend").parameters()[0].scale;
+  // h gamma = 2 is the limit (stability.h), and gamma = 16 D / (m l^3) of an even chain
+  const double spacing = RodLength(base.order) / static_cast<double>(base.order.size() - 1);
+  options->most_bending_damping =
+      kDampedPart * kMostSubsteps * base.mass.minCoeff() * std::pow(spacing, 3) / 8;
 }
 
 }  // namespace

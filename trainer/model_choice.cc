@@ -59,7 +59,8 @@ std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
       if (factors.effect_count() == 0 && rigidity != 0) continue;
       Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
       if (factors.friction() >= 0) x[factors.friction()] = friction;
-      if (factors.effect_count() > 0) x[factors.effects()] = x[factors.effects() + 1] = rigidity;
+      // stiffness, damping and friction of bending (fit_model.h)
+      if (factors.effect_count() > 0) x.segment<3>(factors.effects()).setConstant(rigidity);
       starts.push_back(x);
     }
   }

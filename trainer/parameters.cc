@@ -51,6 +51,7 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
       effects_at_(classes_ + 2 * class_count_),
       size_(effects_at_ + effects_.size()) {
+  effects_.Limit("bending_damping", options.most_bending_damping);
   const auto add = [this](bool wanted, int* offset) {
     if (!wanted) return;
     *offset = size_;
@@ -83,8 +84,10 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
     const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
     system.stiffness[e] *= std::exp(values[hand ? kControllerStiffness : kStiffness] +
                                     values[ClassStiffness(e)] + own_stiffness);
-    system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
-                                  values[ClassDashpot(e)] + own_dashpot);
+    if (options_.dashpots) {
+      system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
+                                    values[ClassDashpot(e)] + own_dashpot);
+    }
     if (rest_length_ >= 0) system.rest_length[e] *= std::exp(values[rest_length_ + e]);
   }
   system.drag *= std::exp(values[kDrag]);
@@ -107,7 +110,7 @@ Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringM
     // forward: y = base exp(sum), so y_bar y is the derivative with respect to
     // each
     const double stiffness_bar = gradient.stiffness[e] * system.stiffness[e];
-    const double dashpot_bar = gradient.dashpot[e] * system.dashpot[e];
+    const double dashpot_bar = options_.dashpots ? gradient.dashpot[e] * system.dashpot[e] : 0;
     bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
     bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;
     bar[ClassStiffness(e)] += stiffness_bar;
