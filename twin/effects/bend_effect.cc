@@ -66,10 +66,11 @@ void AddBendForces(const std::vector<BendLaw>& laws, const Instant& instant,
   for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
     const BendingTriple& triple = triples[i];
     const Bent bent(instant, triple);
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero(), none;
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
     for (const BendLaw& law : laws) {
       double* z = law.force->has_internal() ? internal.data() + law.internal + 3 * i : nullptr;
-      Eigen::Vector3d variables = z ? Eigen::Vector3d(Eigen::Map<Eigen::Vector3d>(z)) : none;
+      Eigen::Vector3d variables = Eigen::Vector3d::Zero();
+      if (z) variables = Eigen::Map<Eigen::Vector3d>(z);
       moment += law.force->Moment(i, bent.bend, instant.step, &variables);
       if (z) Eigen::Map<Eigen::Vector3d>{z} = variables;
     }
