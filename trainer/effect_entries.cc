@@ -22,15 +22,6 @@ EffectEntries::EffectEntries(std::vector<EffectValues> start, double unit)
   }
 }
 
-void EffectEntries::Limit(const std::string& name, double high) {
-  std::size_t i = 0;
-  for (const EffectValues& effect : start_) {
-    for (Eigen::Index n = 0; n < effect.values.size(); ++n, ++i) {
-      if (effect.name == name) entries_[i].high = std::min(entries_[i].high, high);
-    }
-  }
-}
-
 double EffectEntries::Entry::Unbounded(double x) const {
   return logarithmic ? start * std::exp(x) : start + scale * x;
 }

@@ -6,7 +6,6 @@
 #ifndef PHYSPRING_TRAINER_EFFECT_ENTRIES_H_
 #define PHYSPRING_TRAINER_EFFECT_ENTRIES_H_
 
-#include <string>
 #include <vector>
 
 #include "twin/effects/effect.h"
@@ -17,9 +16,6 @@ class EffectEntries {
  public:
   // `unit`: by how much more than the parameters' scales even ones move.
   explicit EffectEntries(std::vector<EffectValues> start, double unit = 1);
-
-  // Keeps the effect's values below `high`, if it is one of them.
-  void Limit(const std::string& name, double high);
 
   int size() const { return static_cast<int>(entries_.size()); }
   std::vector<EffectValues> Apply(const Eigen::VectorXd& x) const;

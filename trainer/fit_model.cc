@@ -22,6 +22,10 @@ constexpr int kMostPerWanted = 4;        // neighbours, at most this many times 
 // Standard deviations of the prior on the springs' own parts.
 constexpr double kOwnStiffness = 0.5, kOwnDashpot = 0.5, kOwnRestLength = 0.01;
 
+// Strands that stick and slip make a chain's motions rough: longer differences see its slopes. And
+// so many of their coordinates, one after the other, are off alike: they count as one.
+constexpr double kChainDifference = 2e-2, kAlike = 300;
+
 // What one entry of x is expected to move by, and how strongly it acts beside a log-stiffness.
 struct EntryScale {
   double deviation, scale;
@@ -54,38 +58,34 @@ std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions&
   return counts;
 }
 
-// Part of the most sub-steps that damping of bending may take.
-constexpr double kDampedPart = 0.3;
-
 // Where the curvature of a rod of length l that slips begins to matter, kSlip / l.
 constexpr double kSlip = 5;
 
 double RodLength(const Eigen::VectorXd& order) { return order.maxCoeff() - order.minCoeff(); }
 
-// A chain of nodes that bends as a rod does: with stiffness, damping, friction between its strands,
-// and a shape of its own, unless effects of bending are known. They start from what would matter to
-// a rod of this length l and weight m g: of rigidity kRigidity m g l^2, which its damping relaxes
-// in kDamped (l / g)^1/2, and with kFriction of its moment at the curvature where it slips.
+// A chain of nodes that bends as a rod does: with stiffness, friction between its strands, and a
+// shape of its own, unless effects of bending are known. They start from what would matter to a rod
+// of this length l and weight m g: a rigidity of kRigidity m g l^2, and kFriction of its moment at
+// the curvature where it slips. Free motions lose what they lose by friction and drag; a damping of
+// bending would only serve fits under an observer, and need more sub-steps.
 Candidate BendingChain(const Recording& recording, Candidate candidate) {
   candidate.neighbours = 2;
   if (std::any_of(candidate.effects.begin(), candidate.effects.end(),
                   [](const auto& effect) { return GetEffect(effect.name).bends(); })) {
     return candidate;
   }
-  constexpr double kRigidity = 3e-3, kDamped = 3e-3, kFriction = 0.3;
+  constexpr double kRigidity = 3e-3, kFriction = 0.3;
   const double length = RodLength(recording.order);
   const double spacing = length / static_cast<double>(recording.order.size() - 1);
   const double gravity = recording.gravity.norm() > 0 ? recording.gravity.norm() : 9.81;
   const double rigidity = kRigidity * recording.mass * gravity * length * length;
-  const double damping = kDamped * std::sqrt(length / gravity) * rigidity;
   const double friction = kFriction * rigidity * kSlip / length;
   candidate.effects.push_back({"bending", Eigen::VectorXd::Constant(1, rigidity)});
-  candidate.effects.push_back({"bending_damping", Eigen::VectorXd::Constant(1, damping)});
   candidate.effects.push_back(
       {"bending_friction", Eigen::Vector2d(friction, kSlip / length * spacing)});
   candidate.effects.push_back(
       {"rest_bend", Eigen::VectorXd::Zero(GetEffect("rest_bend").value_count())});
-  candidate.free_effects = 4;
+  candidate.free_effects = 3;
   return candidate;
 }
 
@@ -99,16 +99,12 @@ void SetFreeEffects(const SpringMassSystem& base, int free_effects, ParameterOpt
   const EffectValues& bending = *(base.effects.end() - free_effects);
   const double moment = bending.values[0] * kSlip / RodLength(base.order);
   options->effect_unit = moment / GetEffect("rest_bend").parameters()[0].scale;
-  // h gamma = 2 is the limit (stability.h), and gamma = 16 D / (m l^3) of an even chain
-  const double spacing = RodLength(base.order) / static_cast<double>(base.order.size() - 1);
-  options->most_bending_damping =
-      kDampedPart * kMostSubsteps * base.mass.minCoeff() * std::pow(spacing, 3) / 8;
 }
 
 }  // namespace
 
 std::string Candidate::Label() const {
-  return fmt::format("{} neighbours{}{}{}", neighbours, free_effects > 0 ? " and bending" : "",
+  return fmt::format("{} neighbours{}{}{}", neighbours, is_chain() ? " and bending" : "",
                      controller_velocity ? "" : ", controllers without velocity",
                      cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
 }
@@ -191,6 +187,13 @@ GaussNewtonOptions SpringPrior(const Parameters& parameters) {
 }
 
 double FactorDifference(const Recording& recording) { return recording.ground ? 1e-2 : 1e-3; }
+
+LevenbergMarquardtOptions FactorOptions(const Recording& recording, const Candidate& candidate) {
+  LevenbergMarquardtOptions options;
+  options.difference = candidate.is_chain() ? kChainDifference : FactorDifference(recording);
+  if (candidate.is_chain()) options.precision *= kAlike;
+  return options;
+}
 
 double DirectionDifference(const Recording& recording, bool single_precision) {
   return recording.ground || single_precision ? 1e-3 : 1e-5;

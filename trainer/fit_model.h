@@ -9,6 +9,7 @@
 
 #include "trainer/fitter.h"
 #include "trainer/gauss_newton.h"
+#include "trainer/levenberg_marquardt.h"
 #include "trainer/parameters.h"
 #include "trainer/track_problem.h"
 #include "trainer/train_options.h"
@@ -27,6 +28,7 @@ struct Candidate {
   Eigen::VectorXd mass = {};  // kg, of each particle; empty: all alike
   int free_effects = 0;       // so many effects, the last ones, are fitted
 
+  bool is_chain() const { return free_effects > 0; }  // a rod's model that bends
   std::string Label() const;
 };
 
@@ -55,6 +57,7 @@ constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
 // Steps of differences in the log-factors: of one common factor, and the longest entry of a step
 // along all parameters. Contacts make residuals jump, and floats are coarse: both want longer ones.
 double FactorDifference(const Recording& recording);
+LevenbergMarquardtOptions FactorOptions(const Recording& recording, const Candidate& candidate);
 double DirectionDifference(const Recording& recording, bool single_precision);
 
 // No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kMostCommonRecordings = 4;  // that common factors are fitted to
 constexpr int kStepsPerGain = 6;          // of common factors
-constexpr int kFirstBendingGain = 2;      // of a chain's, which go on from those of the choice ...
-constexpr int kLastBendingSteps = 15;     // ... and have so many steps with the last gain
+constexpr int kFirstChainGain = 3;        // of a chain's, which go on from those of the choice ...
+constexpr int kChainStepsPerGain = 20;    // ... and take longer
 constexpr int kFirstSpringGain = 3;       // of kObserverGains
 constexpr int kFollowedSteps = 3;         // of Gauss-Newton with each gain before the last ...
 constexpr int kGaussNewtonSteps = 15;     // ... and with that one
@@ -56,26 +56,26 @@ void FullFit::StepChoose() {
   state_.iteration = 0;
   state_.gain = 0;
   state_.damping = 1e-2;
-  if (model_.candidate.free_effects == 0) {
-    model_.factors = model_.start;
+  if (model_.candidate.is_chain()) {
+    state_.gain = kFirstChainGain;
   } else {
-    state_.gain = kFirstBendingGain;
+    model_.factors = model_.start;
   }
 }
 
 // A chain that bends (fit_model.h) has no more than common factors: they get what single springs
-// would get, more recordings and more steps with the last gain.
+// would get, more recordings and more steps.
 void FullFit::StepCommon() {
-  const bool chain = model_.candidate.free_effects > 0, last = chain && state_.gain == kLastGain;
+  const bool chain = model_.candidate.is_chain();
   const LevenbergMarquardtState factors =
-      StepFactors(model_, last ? all_ : FitEpisodes(data_, kMostCommonRecordings), options_,
+      StepFactors(model_, chain ? all_ : FitEpisodes(data_, kMostCommonRecordings), options_,
                   kObserverGains[state_.gain], state_.damping);
   model_.factors = factors.x;
   state_.damping = factors.damping;
   state_.mean_square = factors.mean_square;
   status_ = fmt::format("{}, all fit frames: {:.3f} mm", model_.candidate.Label(),
                         PointMillimetres(factors.mean_square));
-  const int steps = last ? kLastBendingSteps : kStepsPerGain;
+  const int steps = chain ? kChainStepsPerGain : kStepsPerGain;
   if (++state_.iteration < steps && !factors.converged) return;
   state_.iteration = 0;
   state_.damping = 1e-2;

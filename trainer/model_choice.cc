@@ -59,8 +59,7 @@ std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
       if (factors.effect_count() == 0 && rigidity != 0) continue;
       Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
       if (factors.friction() >= 0) x[factors.friction()] = friction;
-      // stiffness, damping and friction of bending (fit_model.h)
-      if (factors.effect_count() > 0) x.segment<3>(factors.effects()).setConstant(rigidity);
+      if (factors.effect_count() > 0) x[factors.effects()] = rigidity;  // (fit_model.h)
       starts.push_back(x);
     }
   }
@@ -74,21 +73,20 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   const Recording& recording = *episodes.at(0).recording;
   TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
   follow.threads = 1;  // the differences run in parallel
-  if (model.candidate.free_effects == 0) follow.most_substeps /= 2;  // single springs want room
+  if (!model.candidate.is_chain()) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
   const Parameters factors =
       CommonFactors(StartSystem(recording, model.candidate, model.start_substeps), recording,
                     model.candidate.free_effects);
   TrackProblem problem(factors, episodes, follow);
-  LevenbergMarquardtOptions levenberg;
+  LevenbergMarquardtOptions levenberg = FactorOptions(recording, model.candidate);
   levenberg.threads = options.threads;
-  levenberg.difference = FactorDifference(recording);
   LevenbergMarquardtState state;
   state.x = model.factors;
   state.damping = damping;
   // a chain that is far off for a while would outweigh all others
   double limit = kInfinity;
-  if (gain == 0 && model.candidate.free_effects > 0) {
+  if (model.candidate.is_chain()) {
     if (const auto r = problem.Residuals(state.x)) limit = kRobust * MedianSize(*r);
   }
   const auto residuals = [&](const Eigen::VectorXd& x) {
@@ -157,12 +155,18 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
 
 bool ModelChoice::Step() {
   if (round_ == kRoundCount) return false;
-  if (round_ < kRoundCount - 1 || Current().model.candidate.free_effects > 0) {
+  if (round_ < kRoundCount - 1 || Current().model.candidate.is_chain()) {
     StepCommonFactors();
   } else {
     StepSprings();
   }
   return true;
+}
+
+// In the last round a chain has free motions fitted, where others have single springs.
+int ModelChoice::LastGain() const {
+  const bool chain = contenders_[round_order_[turn_]].model.candidate.is_chain();
+  return chain && round_ == kRoundCount - 1 ? kLastGain : kRounds[round_].last_gain;
 }
 
 void ModelChoice::StepCommonFactors() {
@@ -177,7 +181,7 @@ void ModelChoice::StepCommonFactors() {
                         1e3 * std::sqrt(3 * factors.mean_square));
   if (++iteration_ < kRounds[round_].most_steps && !factors.converged) return;
   iteration_ = 0;
-  if (++gain_ <= kRounds[round_].last_gain) return;
+  if (++gain_ <= LastGain()) return;
   FinishContender(model.System(first()));
 }
 
@@ -254,7 +258,7 @@ double ModelChoice::Progress() const {
   if (round_ == kRoundCount) return 1;
   constexpr std::array<double, kRounds.size() + 1> kStart = {0, 0.5, 0.9, 1};
   const Round& round = kRounds[round_];
-  const int gains = round.last_gain - round.first_gain + 1;
+  const int gains = LastGain() - round.first_gain + 1;
   const double part =
       (gain_ - round.first_gain + static_cast<double>(iteration_) / round.most_steps) / gains;
   const double turns = (turn_ + part) / static_cast<double>(round_order_.size());

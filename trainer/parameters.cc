@@ -51,7 +51,6 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
       effects_at_(classes_ + 2 * class_count_),
       size_(effects_at_ + effects_.size()) {
-  effects_.Limit("bending_damping", options.most_bending_damping);
   const auto add = [this](bool wanted, int* offset) {
     if (!wanted) return;
     *offset = size_;

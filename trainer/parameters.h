@@ -12,7 +12,6 @@
 #ifndef PHYSPRING_TRAINER_PARAMETERS_H_
 #define PHYSPRING_TRAINER_PARAMETERS_H_
 
-#include <limits>
 #include <vector>
 
 #include "trainer/effect_entries.h"
@@ -30,8 +29,6 @@ struct ParameterOptions {
   double effect_unit = 1;      // of those that move evenly (effect_entries.h)
   bool length_classes = true;  // else all springs are of one class
   bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
-  // N m^2 s: of the effect bending_damping, if it is free.
-  double most_bending_damping = std::numeric_limits<double>::infinity();
 };
 
 class Parameters {

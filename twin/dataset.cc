@@ -93,8 +93,10 @@ std::vector<RecordingEntry> ListRecordings(const std::vector<std::string>& argum
   std::vector<RecordingEntry> entries;
   for (const std::string& argument : arguments) {
     std::error_code missing;
-    if (fs::is_directory(argument, missing)) {
-      const std::vector<RecordingEntry> listed = RecordingsOfRole(argument, role);
+    const bool names_dataset = fs::path(argument).filename() == "dataset.json";
+    const fs::path folder = names_dataset ? fs::path(argument).parent_path() : fs::path(argument);
+    if (names_dataset || fs::is_directory(folder, missing)) {
+      const std::vector<RecordingEntry> listed = RecordingsOfRole(folder, role);
       entries.insert(entries.end(), listed.begin(), listed.end());
     } else if (fs::exists(argument, missing)) {
       entries.push_back(SingleRecording(argument));

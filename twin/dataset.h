@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which recordings the arguments of `train` and `eval` stand for: a file is itself, a folder with a
-// dataset.json is its recordings of one role. Of that file only these keys are read:
+// dataset.json, or that file, is its recordings of one role. Of that file only these keys are read:
 //   {"recordings": [{"file": "a.npz", "role": "fit" or "heldout", "continuous_recording": 0}, ...],
 //    "published_l1_m": {...}}
 #ifndef PHYSPRING_TWIN_DATASET_H_

@@ -132,26 +132,6 @@ TEST(Parameters, DashpotsThatAreNotFreeStayAndPassNoDerivative) {
   EXPECT_NE(bar[0], 0);
 }
 
-TEST(Parameters, BendingDampingStaysBelowItsLimit) {
-  SpringMassSystem base = RandomSystem(10, 2, 3);
-  base.effects = {{"bending_damping", Eigen::VectorXd::Constant(1, 1e-5)}};
-  ParameterOptions options = kCommon;
-  options.free_effects = 1;
-  options.most_bending_damping = 3e-5;
-  const Parameters parameters(base, options);
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(parameters.size());
-  SystemGradient weights(base);
-  weights.effects[0][0] = 1;
-  values[parameters.effects()] = std::log(2.9);
-  SpringMassSystem system = parameters.Apply(values);
-  EXPECT_NEAR(system.effects[0].values[0], 2.9e-5, 1e-18);
-  EXPECT_NEAR(parameters.Adjoint(values, system, weights)[parameters.effects()], 2.9e-5, 1e-18);
-  values[parameters.effects()] = std::log(3.1);
-  system = parameters.Apply(values);
-  EXPECT_EQ(system.effects[0].values[0], 3e-5);
-  EXPECT_EQ(parameters.Adjoint(values, system, weights)[parameters.effects()], 0);
-}
-
 TEST(Parameters, SpringsWithoutClassesHaveOne) {
   ParameterOptions options = kCommon;
   options.length_classes = false;

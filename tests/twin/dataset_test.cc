@@ -47,6 +47,12 @@ TEST_F(Dataset, StandsForItsRecordingsOfARole) {
   EXPECT_TRUE(heldout[0].heldout);
 }
 
+TEST_F(Dataset, MayBeNamedByItsFile) {
+  const std::vector<RecordingEntry> heldout = ListRecordings({json_}, Role::kHeldout);
+  ASSERT_EQ(heldout.size(), 1u);
+  EXPECT_EQ(heldout[0].path, folder_.File("c.npz"));
+}
+
 TEST_F(Dataset, SaysTheSameOfAFileGivenByItself) {
   const std::vector<RecordingEntry> listed = ListRecordings({folder_.File("c.npz")}, Role::kFit);
   ASSERT_EQ(listed.size(), 1u);
