@@ -24,7 +24,7 @@ constexpr double kOwnStiffness = 0.5, kOwnDashpot = 0.5, kOwnRestLength = 0.01;
 
 // Strands that stick and slip make a chain's motions rough: longer differences see its slopes. And
 // so many of their coordinates, one after the other, are off alike: they count as one.
-constexpr double kChainDifference = 2e-2, kAlike = 300;
+constexpr double kChainDifference = 1e-2, kAlike = 30;
 
 // What one entry of x is expected to move by, and how strongly it acts beside a log-stiffness.
 struct EntryScale {
@@ -66,20 +66,24 @@ double RodLength(const Eigen::VectorXd& order) { return order.maxCoeff() - order
 // A chain of nodes that bends as a rod does: with stiffness, friction between its strands, and a
 // shape of its own, unless effects of bending are known. They start from what would matter to a rod
 // of this length l and weight m g: a rigidity of kRigidity m g l^2, and kFriction of its moment at
-// the curvature where it slips. Free motions lose what they lose by friction and drag; a damping of
-// bending would only serve fits under an observer, and need more sub-steps.
+// the curvature where it slips. A little damping, which is not fitted, calms the shortest waves,
+// at the rate kCalm; more of it would serve fits under an observer, but not free motions.
 Candidate BendingChain(const Recording& recording, Candidate candidate) {
   candidate.neighbours = 2;
   if (std::any_of(candidate.effects.begin(), candidate.effects.end(),
                   [](const auto& effect) { return GetEffect(effect.name).bends(); })) {
     return candidate;
   }
-  constexpr double kRigidity = 3e-3, kFriction = 0.3;
+  constexpr double kRigidity = 3e-3, kFriction = 0.3, kCalm = 100;  // kCalm: 1/s
   const double length = RodLength(recording.order);
   const double spacing = length / static_cast<double>(recording.order.size() - 1);
   const double gravity = recording.gravity.norm() > 0 ? recording.gravity.norm() : 9.81;
   const double rigidity = kRigidity * recording.mass * gravity * length * length;
   const double friction = kFriction * rigidity * kSlip / length;
+  // of an even chain of nodes of mass m at distances l: 16 D / (m l^3)
+  const double node_mass = recording.mass / static_cast<double>(recording.particle_count());
+  const double damping = kCalm * node_mass * std::pow(spacing, 3) / 16;
+  candidate.effects.push_back({"bending_damping", Eigen::VectorXd::Constant(1, damping)});
   candidate.effects.push_back({"bending", Eigen::VectorXd::Constant(1, rigidity)});
   candidate.effects.push_back(
       {"bending_friction", Eigen::Vector2d(friction, kSlip / length * spacing)});

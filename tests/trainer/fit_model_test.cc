@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/swung_rope.h"
+#include "twin/effects/effect_set.h"
 
 namespace physpring {
 namespace {
@@ -17,11 +18,28 @@ Recording Rod() {
 TEST(Candidates, OfARodEndWithAChainThatBends) {
   const Candidate chain = Candidates(Rod(), {}).back();
   EXPECT_EQ(chain.neighbours, 2);
-  EXPECT_EQ(chain.free_effects, 4);
+  EXPECT_EQ(chain.free_effects, 3);
   const SpringMassSystem system = StartSystem(Rod(), chain, 8);
   EXPECT_EQ(system.effects.size(), 4U);
   EXPECT_NO_THROW(system.Validate("chain"));
-  EXPECT_EQ(CommonFactors(system, Rod(), 4).effect_count(), 1 + 1 + 2 + 16);
+  EXPECT_EQ(CommonFactors(system, Rod(), 3).effect_count(), 1 + 2 + 16);
+}
+
+// Nodes that go to and fro across the rod, every other one the other way: its shortest wave.
+TEST(Candidates, OfARodCalmItsShortestWave) {
+  SpringMassSystem system = StartSystem(Rod(), Candidates(Rod(), {}).back(), 8);
+  std::erase_if(system.effects,
+                [](const EffectValues& effect) { return effect.name != "bending_damping"; });
+  ASSERT_EQ(system.effects.size(), 1U);
+  system.position.topRows(2).setZero();  // straight
+  const EffectSet effects(system, Eigen::Vector3d::Zero());
+  Points v = Points::Zero(3, system.position.cols());
+  for (Eigen::Index i = 0; i < v.cols(); ++i) v(0, i) = i % 2 == 0 ? 0.3 : -0.3;
+  Points force = Points::Zero(3, v.cols());
+  Eigen::VectorXd internal(0);
+  effects.AddForces({0, 1e-4, system.position, v}, &internal, &force);
+  const int middle = 15;
+  EXPECT_NEAR(force(0, middle) / (system.mass[middle] * v(0, middle)), -100, 1e-6);
 }
 
 TEST(Candidates, OfARodWhoseBendingIsKnownDoNotFitIt) {
