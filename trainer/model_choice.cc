@@ -32,6 +32,7 @@ constexpr int kChoiceConjugateGradients = 20;
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr std::array<double, 3> kRigidities = {0, -2, 2};
 constexpr double kRobust = 2;  // medians of the residuals, up to which their squares count
+constexpr double kLeastError = 1e-9;  // m
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double MedianSize(const Eigen::VectorXd& r) {
@@ -134,10 +135,11 @@ void ModelChoice::SearchStart(ChosenModel* model) const {
   }
 }
 
-// Of held-back frames, under an observer of this gain.
+// Of held-back frames, under an observer of this gain: the geometric mean over recordings, so that
+// one in which a free motion loses its phase does not decide.
 double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& candidate,
                                double gain) const {
-  double sum = 0;
+  double sum = 0;  // of logarithms
   for (const HeldBack::Judged& judged : held_back_.judged) {
     RolloutOptions options = FollowOptions(first(), candidate, options_).rollout;
     if (options.substeps == 0) {
@@ -148,9 +150,10 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
     const int frames = judged.whole->train_frames;
     const auto rollout = RollOut(system, {judged.whole, frames}, options);
     if (rollout->diverged()) return kInfinity;
-    sum += MeanTrackError(rollout->positions(), judged.held_back, 1, frames).value_or(0);
+    const auto error = MeanTrackError(rollout->positions(), judged.held_back, 1, frames);
+    sum += std::log(std::max(error.value_or(0), kLeastError));
   }
-  return sum / static_cast<double>(held_back_.judged.size());
+  return std::exp(sum / static_cast<double>(held_back_.judged.size()));
 }
 
 bool ModelChoice::Step() {
@@ -161,6 +164,11 @@ bool ModelChoice::Step() {
     StepSprings();
   }
   return true;
+}
+
+bool ModelChoice::IsChainInRound() const {
+  return std::any_of(round_order_.begin(), round_order_.end(),
+                     [this](int i) { return contenders_[i].model.candidate.is_chain(); });
 }
 
 // In the last round a chain has free motions fitted, where others have single springs.
@@ -212,10 +220,16 @@ void ModelChoice::StepSprings() {
 
 void ModelChoice::FinishContender(const SpringMassSystem& system) {
   Contender& contender = Current();
-  contender.score =
-      TrackError(system, contender.model.candidate, kObserverGains[kRounds[round_].last_gain]);
-  if (round_ == kRoundCount - 1) {  // bodies whose motions are chaotic do well only under it
-    contender.score = 0.5 * (contender.score + TrackError(system, contender.model.candidate, 0));
+  const auto error = [&](int gain) {
+    return TrackError(system, contender.model.candidate, kObserverGains[gain]);
+  };
+  const int gain = kRounds[round_].last_gain;
+  if (round_ < kRoundCount - 1) {
+    contender.score = error(gain);
+  } else if (IsChainInRound()) {  // fitted to free motions, it follows an observer worse
+    contender.score = error(kLastGain);
+  } else {  // bodies whose motions are chaotic do well only under an observer
+    contender.score = 0.5 * (error(gain) + error(kLastGain));
   }
   status_ = fmt::format("{}: {:.3f} mm on held-back frames", contender.model.candidate.Label(),
                         1e3 * contender.score);

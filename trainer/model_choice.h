@@ -58,6 +58,7 @@ class ModelChoice {
   };
 
   const Recording& first() const { return data_.recordings[0]; }
+  bool IsChainInRound() const;
   int LastGain() const;
   Contender& Current() { return contenders_[round_order_[turn_]]; }
   void StepCommonFactors();
