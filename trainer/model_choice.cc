@@ -31,8 +31,8 @@ constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground), and of the rigidity's (of a rod).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr std::array<double, 3> kRigidities = {0, -2, 2};
-constexpr double kRobust = 2;  // medians of the residuals, up to which their squares count
-constexpr double kSimpler = 0.9;  // a chain has a tenth of the others' parameters: a tie is its
+constexpr double kRobust = 2;         // medians of the residuals, up to which their squares count
+constexpr double kSimpler = 0.9;      // a chain has a tenth of the others' parameters: a tie is its
 constexpr double kLeastError = 1e-9;  // m
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -74,7 +74,7 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
                                     const TrainOptions& options, double gain, double damping) {
   const Recording& recording = *episodes.at(0).recording;
   TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
-  follow.threads = 1;  // the differences run in parallel
+  follow.threads = 1;                                          // the differences run in parallel
   if (!model.candidate.is_chain()) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
   const Parameters factors =
