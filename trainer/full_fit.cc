@@ -227,6 +227,11 @@ double FullFit::Progress() const {
     case Stage::kChoose:
       return 0.35 * choice_.Progress();
     case Stage::kCommon:
+      if (model_.candidate.is_chain()) {  // ends with them
+        const double part = static_cast<double>(state_.iteration) / kChainStepsPerGain;
+        return 0.35 +
+               0.65 * (state_.gain - kFirstChainGain + part) / (kLastGain + 1 - kFirstChainGain);
+      }
       return 0.35 + 0.05 * state_.gain / (kLastGain + 1);
     case Stage::kGaussNewton:
       if (state_.gain < kLastGain) {
