@@ -118,11 +118,14 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
           ""))
       ->type_name("N|all")
       ->default_str("all");
-  AddKind<SpringKind>(command, "--springs", &options->springs,
-                      {{"tendon", SpringKind::kTendon},
-                       {"plugin", SpringKind::kPlugin},
-                       {"flex", SpringKind::kFlex}},
-                      "what stands for the springs");
+  AddKind<SpringKind>(
+      command, "--springs", &options->springs,
+      {{"auto", SpringKind::kAuto},
+       {"tendon", SpringKind::kTendon},
+       {"plugin", SpringKind::kPlugin},
+       {"flex", SpringKind::kFlex}},
+      "what stands for the springs; auto: tendons, the plugin where they would leave "
+      "out an effect");
   AddKind<ControllerKind>(
       command, "--controllers", &options->controllers,
       {{"auto", ControllerKind::kAuto},
@@ -141,7 +144,7 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
       ->capture_default_str();
   command
       ->add_option("--timestep", options->timestep,
-                   "of the scenes; default: that of the training, with --springs plugin 0.002")
+                   "of the scenes; default: that of the training, with the plugin's springs 0.002")
       ->check(NumberBetween(1e-9, 1))
       ->type_name("SECONDS");
   command

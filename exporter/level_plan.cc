@@ -48,6 +48,17 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
   return name;
 }
 
+SpringKind ChooseSprings(const Twin& twin, int level, const ExportOptions& options) {
+  if (options.springs != SpringKind::kAuto) return options.springs;
+  const SpringMassSystem& system = twin.levels[level].system;
+  const bool left_out = std::any_of(
+      system.effects.begin(), system.effects.end(), [&system](const EffectValues& values) {
+        return GetEffect(values.name).Mjcf(values.values, system).carrier ==
+               EffectMjcf::Carrier::kPlugin;
+      });
+  return left_out ? SpringKind::kPlugin : SpringKind::kTendon;
+}
+
 ControllerKind ChooseControllers(const Twin& twin, const ExportOptions& options) {
   if (options.controllers != ControllerKind::kAuto) return options.controllers;
   // the plugin takes differences of a mocap body's places
@@ -133,16 +144,18 @@ std::string LevelPlan::Vertex(int node) const { return fmt::format("{}_vertex_{}
 
 LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
   LevelOf(twin, level);
+  ExportOptions chosen = options;
+  chosen.springs = ChooseSprings(twin, level, options);
   LevelPlan plan;
   plan.twin = &twin;
   plan.level = level;
-  plan.name = ChooseName(twin, options);
-  plan.springs = options.springs;
-  plan.controllers = ChooseControllers(twin, options);
-  plan.contact = ChooseContact(options);
-  plan.flexes = options.flexes;
+  plan.name = ChooseName(twin, chosen);
+  plan.springs = chosen.springs;
+  plan.controllers = ChooseControllers(twin, chosen);
+  plan.contact = ChooseContact(chosen);
+  plan.flexes = chosen.flexes;
   PlanEffects(&plan);
-  ChooseTimesteps(options, &plan);
+  ChooseTimesteps(chosen, &plan);
   return plan;
 }
 

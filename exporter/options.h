@@ -9,6 +9,7 @@ namespace physpring {
 
 // What stands for the springs.
 enum class SpringKind {
+  kAuto,    // kPlugin if the twin has effects that tendons leave out, else kTendon
   kTendon,  // spatial tendons, one a spring: stock MuJoCo, exact
   kPlugin,  // the plugin physpring.springs: exact, with sub-steps inside one MuJoCo step, fast
   kFlex,    // the edges of a few flexes, springs grouped by stiffness: stock MuJoCo, rounded
@@ -33,7 +34,7 @@ enum class ContactKind {
 struct ExportOptions {
   std::string name;  // prefix of all names; empty: the twin's name, odd characters become '_'
   int level = -1;    // -1: all
-  SpringKind springs = SpringKind::kTendon;
+  SpringKind springs = SpringKind::kAuto;
   ControllerKind controllers = ControllerKind::kAuto;
   ContactKind contact = ContactKind::kAuto;
   int flexes = 8;       // at most, for SpringKind::kFlex

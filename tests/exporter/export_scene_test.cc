@@ -350,7 +350,9 @@ TEST(ExportScene, EffectsAreCarriedByTendons) {
   SpringMassSystem& system = twin.levels[0].system;
   system.effects.push_back({"stiffening", Eigen::VectorXd::Constant(1, 3)});
   system.effects.push_back({"air_drag", GetEffect("air_drag").Starts(system)[0]});
-  const ExportedFolder folder(twin, {});
+  ExportOptions options;
+  options.springs = SpringKind::kTendon;
+  const ExportedFolder folder(twin, options);
   const ModelPtr model = folder.Load("scene.xml");
   const double k = system.stiffness[5], length = system.rest_length[5];
   EXPECT_EQ(model->tendon_stiffness[5], k);

@@ -42,6 +42,20 @@ TEST(LevelPlan, ThePluginHasSubstepsOfItsOwn) {
   EXPECT_EQ(PlanLevel(twin, 0, options).substep, 1e-5);
 }
 
+TEST(LevelPlan, TakesThePluginWhereTendonsWouldLeaveOutAnEffect) {
+  Twin twin = SmallTwin(1);
+  std::vector<EffectValues>& effects = twin.levels[0].system.effects;
+  effects = {{"stiffening", Eigen::VectorXd::Constant(1, 3)}};
+  EXPECT_EQ(PlanLevel(twin, 0, {}).springs, SpringKind::kTendon);
+  effects.push_back({"bending", Eigen::VectorXd::Constant(1, 1e-3)});
+  const LevelPlan plan = PlanLevel(twin, 0, {});
+  EXPECT_EQ(plan.springs, SpringKind::kPlugin);
+  EXPECT_TRUE(plan.differences.empty());
+  ExportOptions options;
+  options.springs = SpringKind::kTendon;
+  EXPECT_EQ(PlanLevel(twin, 0, options).differences.size(), 1U);
+}
+
 TEST(LevelPlan, RefusesAnUnstableTimestep) {
   ExportOptions options;
   options.timestep = 0.05;
