@@ -48,9 +48,8 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
   return name;
 }
 
-SpringKind ChooseSprings(const Twin& twin, int level, const ExportOptions& options) {
-  if (options.springs != SpringKind::kAuto) return options.springs;
-  const SpringMassSystem& system = twin.levels[level].system;
+SpringKind ChooseSprings(const SpringMassSystem& system, SpringKind asked) {
+  if (asked != SpringKind::kAuto) return asked;
   const bool left_out = std::any_of(
       system.effects.begin(), system.effects.end(), [&system](const EffectValues& values) {
         return GetEffect(values.name).Mjcf(values.values, system).carrier ==
@@ -59,16 +58,16 @@ SpringKind ChooseSprings(const Twin& twin, int level, const ExportOptions& optio
   return left_out ? SpringKind::kPlugin : SpringKind::kTendon;
 }
 
-ControllerKind ChooseControllers(const Twin& twin, const ExportOptions& options) {
-  if (options.controllers != ControllerKind::kAuto) return options.controllers;
+ControllerKind ChooseControllers(const Twin& twin, SpringKind springs, ControllerKind asked) {
+  if (asked != ControllerKind::kAuto) return asked;
   // the plugin takes differences of a mocap body's places
-  const bool needs_velocity = twin.controller_velocity && options.springs != SpringKind::kPlugin;
+  const bool needs_velocity = twin.controller_velocity && springs != SpringKind::kPlugin;
   return needs_velocity ? ControllerKind::kSlide : ControllerKind::kMocap;
 }
 
-ContactKind ChooseContact(const ExportOptions& options) {
-  if (options.contact != ContactKind::kAuto) return options.contact;
-  return options.springs == SpringKind::kPlugin ? ContactKind::kPlugin : ContactKind::kMujoco;
+ContactKind ChooseContact(SpringKind springs, ContactKind asked) {
+  if (asked != ContactKind::kAuto) return asked;
+  return springs == SpringKind::kPlugin ? ContactKind::kPlugin : ContactKind::kMujoco;
 }
 
 void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
@@ -144,18 +143,16 @@ std::string LevelPlan::Vertex(int node) const { return fmt::format("{}_vertex_{}
 
 LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
   LevelOf(twin, level);
-  ExportOptions chosen = options;
-  chosen.springs = ChooseSprings(twin, level, options);
   LevelPlan plan;
   plan.twin = &twin;
   plan.level = level;
-  plan.name = ChooseName(twin, chosen);
-  plan.springs = chosen.springs;
-  plan.controllers = ChooseControllers(twin, chosen);
-  plan.contact = ChooseContact(chosen);
-  plan.flexes = chosen.flexes;
+  plan.name = ChooseName(twin, options);
+  plan.springs = ChooseSprings(twin.levels[level].system, options.springs);
+  plan.controllers = ChooseControllers(twin, plan.springs, options.controllers);
+  plan.contact = ChooseContact(plan.springs, options.contact);
+  plan.flexes = options.flexes;
   PlanEffects(&plan);
-  ChooseTimesteps(chosen, &plan);
+  ChooseTimesteps(options, &plan);
   return plan;
 }
 

@@ -57,8 +57,10 @@ constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
 // Steps of differences in the log-factors: of one common factor, and the longest entry of a step
 // along all parameters. Contacts make residuals jump, and floats are coarse: both want longer ones.
 double FactorDifference(const Recording& recording);
-LevenbergMarquardtOptions FactorOptions(const Recording& recording, const Candidate& candidate);
 double DirectionDifference(const Recording& recording, bool single_precision);
+
+// How the common factors of a candidate are fitted.
+LevenbergMarquardtOptions FactorOptions(const Recording& recording, const Candidate& candidate);
 
 // No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);
 // for common factors half of that, so that single springs find room.

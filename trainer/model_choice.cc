@@ -61,7 +61,7 @@ std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
       if (factors.effect_count() == 0 && rigidity != 0) continue;
       Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
       if (factors.friction() >= 0) x[factors.friction()] = friction;
-      if (factors.effect_count() > 0) x[factors.effects()] = rigidity;  // (fit_model.h)
+      if (factors.effect_count() > 0) x[factors.effects()] = rigidity;  // a chain's first
       starts.push_back(x);
     }
   }
@@ -77,9 +77,7 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   follow.threads = 1;                                          // the differences run in parallel
   if (!model.candidate.is_chain()) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
-  const Parameters factors =
-      CommonFactors(StartSystem(recording, model.candidate, model.start_substeps), recording,
-                    model.candidate.free_effects);
+  const Parameters factors = model.Factors(recording);
   TrackProblem problem(factors, episodes, follow);
   LevenbergMarquardtOptions levenberg = FactorOptions(recording, model.candidate);
   levenberg.threads = options.threads;
@@ -99,10 +97,13 @@ LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<
   return LevenbergMarquardtStep(residuals, state, levenberg);
 }
 
-SpringMassSystem ChosenModel::System(const Recording& recording) const {
+Parameters ChosenModel::Factors(const Recording& recording) const {
   return CommonFactors(StartSystem(recording, candidate, start_substeps), recording,
-                       candidate.free_effects)
-      .Apply(factors);
+                       candidate.free_effects);
+}
+
+SpringMassSystem ChosenModel::System(const Recording& recording) const {
+  return Factors(recording).Apply(factors);
 }
 
 ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
@@ -121,8 +122,7 @@ ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
 void ModelChoice::SearchStart(ChosenModel* model) const {
   double least = kInfinity;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
-    const Parameters factors = CommonFactors(StartSystem(first(), model->candidate, substeps),
-                                             first(), model->candidate.free_effects);
+    const Parameters factors = ChosenModel{model->candidate, substeps, {}, {}}.Factors(first());
     TrackProblem::Options follow = FollowOptions(first(), model->candidate, options_);
     follow.rollout.observer_gain = kObserverGains[0];
     TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
@@ -174,7 +174,7 @@ bool ModelChoice::IsChainInRound() const {
 
 // In the last round a chain has free motions fitted, where others have single springs.
 int ModelChoice::LastGain() const {
-  const bool chain = contenders_[round_order_[turn_]].model.candidate.is_chain();
+  const bool chain = Current().model.candidate.is_chain();
   return chain && round_ == kRoundCount - 1 ? kLastGain : kRounds[round_].last_gain;
 }
 

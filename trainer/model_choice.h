@@ -26,6 +26,7 @@ struct ChosenModel {
   double start_substeps = 0;
   Eigen::VectorXd start, factors;  // at first and as fitted
 
+  Parameters Factors(const Recording& recording) const;
   SpringMassSystem System(const Recording& recording) const;
 };
 
@@ -61,6 +62,7 @@ class ModelChoice {
   bool IsChainInRound() const;
   int LastGain() const;
   Contender& Current() { return contenders_[round_order_[turn_]]; }
+  const Contender& Current() const { return contenders_[round_order_[turn_]]; }
   void StepCommonFactors();
   void StepSprings();
   void FinishContender(const SpringMassSystem& system);

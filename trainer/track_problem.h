@@ -29,6 +29,8 @@ class TrackProblem : public LeastSquares {
   };
 
   TrackProblem(const Parameters& parameters, std::vector<Episode> episodes, const Options& options);
+  TrackProblem(Parameters&& parameters, std::vector<Episode> episodes,
+               const Options& options) = delete;  // it is kept by reference
 
   std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) override;
   std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) override;
