@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trainer/parallel.h"
 #include "trainer/reduction/baselines.h"
 #include "trainer/reduction/galerkin.h"
 #include "trainer/reduction/gramian.h"
@@ -70,6 +71,19 @@ enum : int { kBetween, kLearnsTopology, kFitsLevel };
 
 std::string LevelName(int level) { return fmt::format("level{}", level); }
 
+// The arrays whose names begin with `from`, which becomes `to`.
+StateArrays Renamed(const StateArrays& arrays, const std::string& from, const std::string& to) {
+  StateArrays renamed;
+  for (auto entry = arrays.lower_bound(from);
+       entry != arrays.end() && entry->first.starts_with(from); ++entry) {
+    renamed[to + entry->first.substr(from.size())] = entry->second;
+  }
+  return renamed;
+}
+
+constexpr const char* kLevelPrefix = "train/level/";  // of what a LevelFit saves
+std::string TrialPrefix(std::size_t trial) { return fmt::format("train/trial{}/", trial); }
+
 }  // namespace
 
 HierarchyFit::HierarchyFit(FitData data, const TrainOptions& options, std::unique_ptr<Fitter> dense)
@@ -108,52 +122,55 @@ Twin HierarchyFit::WithNextLevel(const std::vector<int>& assignment) const {
 void HierarchyFit::BeginReduction() {
   const Reduction reduce = ReductionOf(options_.reduction);
   if (reduce) {
-    BeginLevel(reduce(twin_.levels.back().system, NodesOfNextLevel(),
-                      options_.seed * 1000 + static_cast<std::uint64_t>(done())));
+    BeginTrials({reduce(twin_.levels.back().system, NodesOfNextLevel(),
+                        options_.seed * 1000 + static_cast<std::uint64_t>(done()))});
   } else {
     topology_.emplace(data_, options_, twin_, network_, weights_, NodesOfNextLevel(),
                       Up(data_.recordings[0]));
   }
 }
 
-void HierarchyFit::BeginLevel(const std::vector<int>& assignment) {
-  const Twin twin = WithNextLevel(assignment);
-  assignment_ = assignment;
-  level_.emplace(data_, options_, twin, network_, weights_);
-  const SpringMassSystem& system = twin.levels.back().system;
+void HierarchyFit::BeginTrials(const std::vector<std::vector<int>>& candidates) {
+  trials_.clear();
+  for (const std::vector<int>& assignment : candidates) {
+    trials_.push_back(std::make_unique<Trial>(
+        assignment, LevelFit(data_, options_, WithNextLevel(assignment), network_, weights_)));
+  }
+  const SpringMassSystem system = trials_[0]->level.System();
   status_ = fmt::format("level {}: {} nodes, {} springs", done(), system.node_count(),
                         system.spring_count());
 }
 
-void HierarchyFit::BeginTrials(const std::vector<std::vector<int>>& candidates) {
-  candidates_ = candidates;
-  scores_.clear();
-  BeginLevel(candidates_[0]);
-}
-
-// Fits the common factors of one candidate after the other, and begins the level with the best.
-void HierarchyFit::StepTrial() {
-  if (!level_->can_be_judged()) {
-    level_->Step();
-    status_ = fmt::format("candidate {} of {}, {}", scores_.size() + 1, candidates_.size(),
-                          level_->Status());
+// Fits the common factors of the first candidates that have not got theirs, each with its share of
+// the threads; when all have, leaves the best.
+void HierarchyFit::StepTrials() {
+  std::vector<std::size_t> running;
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    const bool room = static_cast<int>(running.size()) < options_.threads;
+    if (room && !trials_[i]->level.can_be_judged()) running.push_back(i);
+  }
+  if (running.empty()) {
+    const auto best =
+        std::min_element(trials_.begin(), trials_.end(), [](const auto& a, const auto& b) {
+          return a->level.mean_square() < b->level.mean_square();
+        });
+    std::iter_swap(trials_.begin(), best);
+    trials_.resize(1);
     return;
   }
-  scores_.push_back(level_->mean_square());
-  if (scores_.size() < candidates_.size()) {
-    BeginLevel(candidates_[scores_.size()]);
-    return;
-  }
-  const auto best = std::min_element(scores_.begin(), scores_.end()) - scores_.begin();
-  const std::vector<int> chosen = candidates_[static_cast<std::size_t>(best)];
-  candidates_.clear();
-  if (chosen != assignment_) BeginLevel(chosen);
+  const int count = static_cast<int>(running.size());
+  ParallelFor(count, count,
+              [&](int i) { trials_[running[i]]->level.Step(options_.threads / count); });
+  status_ = fmt::format("candidate {} of {}, {}", running[0] + 1, trials_.size(),
+                        trials_[running[0]]->level.Status());
 }
 
 void HierarchyFit::FinishLevel() {
-  twin_.levels.push_back({level_->System(), assignment_, level_->SubstepsPerSecond()});
-  weights_ = level_->weights();
-  level_.reset();
+  const Trial& chosen = *trials_[0];
+  twin_.levels.push_back(
+      {chosen.level.System(), chosen.assignment, chosen.level.SubstepsPerSecond()});
+  weights_ = chosen.level.weights();
+  trials_.clear();
 }
 
 bool HierarchyFit::Step() {
@@ -174,12 +191,12 @@ bool HierarchyFit::Step() {
       BeginTrials(topology_->candidates());
       topology_.reset();
     }
-  } else if (!level_) {
+  } else if (trials_.empty()) {
     BeginReduction();
-  } else if (!candidates_.empty()) {
-    StepTrial();
-  } else if (level_->Step()) {
-    status_ = level_->Status();
+  } else if (trials_.size() > 1) {
+    StepTrials();
+  } else if (trials_[0]->level.Step(options_.threads)) {
+    status_ = trials_[0]->level.Status();
   } else {
     FinishLevel();
   }
@@ -188,7 +205,7 @@ bool HierarchyFit::Step() {
 
 std::string HierarchyFit::Part() const {
   if (done() == 0) return dense_->Part();
-  return level_ && !topology_ ? level_->Part() : "reduction";
+  return trials_.empty() ? "reduction" : trials_[0]->level.Part();
 }
 
 double HierarchyFit::Progress() const {
@@ -196,11 +213,12 @@ double HierarchyFit::Progress() const {
   double share = 0;  // of the level
   if (topology_) {
     share = kTopologyShare / 2 * topology_->Progress();
-  } else if (!candidates_.empty()) {
-    const double tried = static_cast<double>(scores_.size()) / candidates_.size();
+  } else if (trials_.size() > 1) {
+    double tried = 0;
+    for (const auto& trial : trials_) tried += trial->level.ProgressOfTrial() / trials_.size();
     share = kTopologyShare / 2 * (1 + tried);
-  } else if (level_) {
-    share = kTopologyShare + (1 - kTopologyShare) * level_->Progress();
+  } else if (!trials_.empty()) {
+    share = kTopologyShare + (1 - kTopologyShare) * trials_[0]->level.Progress();
   }
   const double coarse = done() - 1 + share;
   return kDenseShare + (1 - kDenseShare) * coarse / (options_.levels - 1);
@@ -208,9 +226,8 @@ double HierarchyFit::Progress() const {
 
 StateArrays HierarchyFit::Save() const {
   StateArrays arrays = dense_->Save();
-  const int doing = topology_ ? kLearnsTopology : level_ ? kFitsLevel : kBetween;
-  arrays["train/levels_done"] = StoreCounters(
-      {done(), doing, static_cast<int>(candidates_.size()), static_cast<int>(scores_.size())});
+  const int doing = topology_ ? kLearnsTopology : trials_.empty() ? kBetween : kFitsLevel;
+  arrays["train/levels_done"] = StoreCounters({done(), doing, static_cast<int>(trials_.size())});
   if (done() > 0 && !topology_) arrays["train/weights"] = StoreVector(weights_);
   for (int level = 1; level < done(); ++level) {
     arrays["train/" + LevelName(level) + "/assignment"] =
@@ -220,38 +237,34 @@ StateArrays HierarchyFit::Save() const {
         StoreCounters({twin_.levels[level].substeps_per_second});
   }
   if (topology_) arrays.merge(topology_->Save());
-  if (!candidates_.empty()) {
-    std::vector<int> all;
-    for (const auto& one : candidates_) all.insert(all.end(), one.begin(), one.end());
-    arrays["train/candidates"] = StoreCounters(all);
-    arrays["train/candidate_scores"] = StoreVector(Eigen::Map<const Eigen::VectorXd>(
-        scores_.data(), static_cast<Eigen::Index>(scores_.size())));
-  }
-  if (level_) {
-    arrays["train/assignment"] = StoreCounters(assignment_);
-    arrays.merge(level_->Save());
-  }
+  SaveTrials(&arrays);
   return arrays;
+}
+
+void HierarchyFit::SaveTrials(StateArrays* arrays) const {
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    (*arrays)[TrialPrefix(i) + "assignment"] = StoreCounters(trials_[i]->assignment);
+    arrays->merge(Renamed(trials_[i]->level.Save(), kLevelPrefix, TrialPrefix(i)));
+  }
+}
+
+std::vector<int> HierarchyFit::LoadAssignment(const StateArrays& state,
+                                              const std::string& name) const {
+  return LoadCounters(state, name + "/assignment",
+                      static_cast<std::size_t>(twin_.levels.back().system.node_count()));
 }
 
 void HierarchyFit::Load(const StateArrays& state) {
   dense_->Load(state);
-  const std::vector<int> counters = LoadCounters(state, "levels_done", 4);
+  const std::vector<int> counters = LoadCounters(state, "levels_done", 3);
   twin_ = {};
   topology_.reset();
-  level_.reset();
-  candidates_.clear();
-  scores_.clear();
+  trials_.clear();
   if (counters[0] == 0) return;
   twin_ = dense_->Result();
   if (counters[1] != kLearnsTopology) weights_ = LoadVector(state, "weights", weights_.size());
-  const auto load_assignment = [&](const std::string& name) {
-    const int fine = twin_.levels.back().system.node_count();
-    return LoadCounters(state, name, static_cast<std::size_t>(fine));
-  };
   for (int level = 1; level < counters[0]; ++level) {
-    TwinLevel loaded =
-        WithNextLevel(load_assignment(LevelName(level) + "/assignment")).levels.back();
+    TwinLevel loaded = WithNextLevel(LoadAssignment(state, LevelName(level))).levels.back();
     LoadParameters(LevelName(level), state, &loaded.system);
     loaded.substeps_per_second =
         LoadCounters(state, LevelName(level) + "/substeps_per_second", 1)[0];
@@ -261,28 +274,29 @@ void HierarchyFit::Load(const StateArrays& state) {
     BeginReduction();
     topology_->Load(state);
   } else if (counters[1] == kFitsLevel) {
-    BeginLevel(load_assignment("assignment"));
-    level_->Load(state);
-    LoadCandidates(state, counters[2], counters[3]);
+    LoadTrials(state, counters[2]);
   }
 }
 
-void HierarchyFit::LoadCandidates(const StateArrays& state, int candidates, int scores) {
-  if (candidates == 0) return;
-  const int nodes = twin_.levels.back().system.node_count();
-  const std::vector<int> all =
-      LoadCounters(state, "candidates", static_cast<std::size_t>(candidates) * nodes);
-  for (auto one = all.begin(); one != all.end(); one += nodes) {
-    candidates_.emplace_back(one, one + nodes);
+void HierarchyFit::LoadTrials(const StateArrays& state, int count) {
+  std::vector<std::vector<int>> candidates;
+  for (int i = 0; i < count; ++i) {
+    candidates.push_back(LoadAssignment(state, fmt::format("trial{}", i)));
   }
-  const Eigen::VectorXd tried = LoadVector(state, "candidate_scores", scores);
-  scores_.assign(tried.begin(), tried.end());
+  BeginTrials(candidates);
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    trials_[i]->level.Load(Renamed(state, TrialPrefix(i), kLevelPrefix));
+  }
 }
 
 Twin HierarchyFit::Result() const {
   if (done() == 0) return dense_->Result();
   Twin twin = twin_;
-  if (level_) twin.levels.push_back({level_->System(), assignment_, level_->SubstepsPerSecond()});
+  if (!trials_.empty()) {
+    const Trial& first = *trials_[0];
+    twin.levels.push_back(
+        {first.level.System(), first.assignment, first.level.SubstepsPerSecond()});
+  }
   return twin;
 }
 

@@ -10,6 +10,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "trainer/fitter.h"
 #include "trainer/level_fit.h"
@@ -34,13 +36,22 @@ class HierarchyFit : public Fitter {
   Twin Result() const override;
 
  private:
+  // The next level with one of the assignments that it may have.
+  struct Trial {
+    std::vector<int> assignment;
+    LevelFit level;
+    Trial(std::vector<int> members, LevelFit fit)
+        : assignment(std::move(members)), level(std::move(fit)) {}
+  };
+
   int NodesOfNextLevel() const;
   void BeginReduction();
-  void BeginLevel(const std::vector<int>& assignment);
   void BeginTrials(const std::vector<std::vector<int>>& candidates);
-  void StepTrial();
+  void StepTrials();
   void FinishLevel();
-  void LoadCandidates(const StateArrays& state, int candidates, int scores);
+  void SaveTrials(StateArrays* arrays) const;
+  void LoadTrials(const StateArrays& state, int count);
+  std::vector<int> LoadAssignment(const StateArrays& state, const std::string& name) const;
   Twin WithNextLevel(const std::vector<int>& assignment) const;
   int done() const { return static_cast<int>(twin_.levels.size()); }
 
@@ -50,13 +61,10 @@ class HierarchyFit : public Fitter {
   GraphNetwork network_;
   Eigen::VectorXd weights_;  // as the last level left them
   Twin twin_;                // the levels that are done
-  // The next one: its assignment is learned, if it is; of several candidates the one whose common
-  // factors can be fitted best is taken; it is fitted.
+  // The next one: its assignment is learned, if it is; of several the one whose common factors can
+  // be fitted best is left; that is fitted on.
   std::optional<TopologyFit> topology_;
-  std::vector<std::vector<int>> candidates_;  // empty when one is chosen
-  std::vector<double> scores_;                // of the candidates tried, m^2
-  std::vector<int> assignment_;               // of level_
-  std::optional<LevelFit> level_;
+  std::vector<std::unique_ptr<Trial>> trials_;
   std::string status_;
 };
 

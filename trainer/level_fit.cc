@@ -194,7 +194,8 @@ void LevelFit::StepSprings() {
   if (++iteration_ >= kLevelGaussNewtonSteps || after.converged || slow) stage_ = Stage::kDone;
 }
 
-bool LevelFit::Step() {
+bool LevelFit::Step(int threads) {
+  options_.threads = threads;
   switch (stage_) {
     case Stage::kCommon:
       StepCommon();
@@ -238,7 +239,11 @@ double LevelFit::Progress() const {
   return 0;
 }
 
-bool LevelFit::can_be_judged() const { return stage_ != Stage::kCommon || gain_ == kLastGain; }
+double LevelFit::ProgressOfTrial() const {
+  if (stage_ != Stage::kCommon || gain_ == kLastGain) return 1;
+  return (gain_ - kFirstGain + static_cast<double>(iteration_) / kLevelStepsPerGain) /
+         (kLastGain - kFirstGain);
+}
 
 StateArrays LevelFit::Save() const {
   StateArrays arrays = {

@@ -29,8 +29,8 @@ class LevelFit {
   LevelFit(const FitData& data, const TrainOptions& options, const Twin& twin,
            const GraphNetwork& network, const Eigen::VectorXd& weights);
 
-  // As Fitter's.
-  bool Step();
+  // As Fitter's; on so many threads at most.
+  bool Step(int threads);
   double Progress() const;
   std::string Part() const;
   const std::string& Status() const { return status_; }
@@ -43,7 +43,8 @@ class LevelFit {
   const Eigen::VectorXd& weights() const { return corrections_.best_weights(); }
   // Whether the common factors are fitted under the observer's last gain above 0, and the mean
   // square of the residuals then, m^2: what candidates are judged by.
-  bool can_be_judged() const;
+  bool can_be_judged() const { return ProgressOfTrial() == 1; }
+  double ProgressOfTrial() const;
   double mean_square() const { return mean_square_; }
 
  private:

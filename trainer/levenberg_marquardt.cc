@@ -4,23 +4,38 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "trainer/parallel.h"
 
 namespace physpring {
 namespace {
 
-// Columns d r / d x_i by forward differences. A parameter whose step cannot be evaluated gets 0: it
-// stays where it is in this step.
-Eigen::MatrixXd Jacobian(const ResidualFunction& residuals, const Eigen::VectorXd& x,
-                         const Eigen::VectorXd& r, const LevenbergMarquardtOptions& options) {
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(r.size(), x.size());
-  ParallelFor(static_cast<int>(x.size()), options.threads, [&](int i) {
+// The residuals r at x, none where they cannot be evaluated, and columns d r / d x_i by forward
+// differences. A parameter whose step cannot be evaluated gets 0: it stays where it is in this
+// step.
+struct Linearisation {
+  std::optional<Eigen::VectorXd> r;
+  Eigen::MatrixXd jacobian;
+};
+
+Linearisation Linearise(const ResidualFunction& residuals, const Eigen::VectorXd& x,
+                        const LevenbergMarquardtOptions& options) {
+  const int count = static_cast<int>(x.size());
+  std::vector<std::optional<Eigen::VectorXd>> at(static_cast<std::size_t>(count) + 1);
+  ParallelFor(count + 1, options.threads, [&](int i) {
     Eigen::VectorXd moved = x;
-    moved[i] += options.difference;
-    if (const auto at = residuals(moved)) jacobian.col(i) = (*at - r) / options.difference;
+    if (i > 0) moved[i - 1] += options.difference;
+    at[i] = residuals(moved);
   });
-  return jacobian;
+  Linearisation result = {std::move(at[0]), {}};
+  if (!result.r) return result;
+  result.jacobian = Eigen::MatrixXd::Zero(result.r->size(), count);
+  for (int i = 0; i < count; ++i) {
+    if (at[i + 1]) result.jacobian.col(i) = (*at[i + 1] - *result.r) / options.difference;
+  }
+  return result;
 }
 
 }  // namespace
@@ -30,7 +45,7 @@ LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals
                                                const LevenbergMarquardtOptions& options) {
   LevenbergMarquardtState next = state;
   next.converged = true;
-  const auto r = residuals(state.x);
+  const auto [r, jacobian] = Linearise(residuals, state.x, options);
   if (!r || r->size() == 0) return next;
   const double count = static_cast<double>(r->size());
   const double variance = std::max(r->squaredNorm() / count, 1e-300);
@@ -39,7 +54,6 @@ LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals
     return residual.squaredNorm() / variance + options.precision * x.squaredNorm();
   };
   const double before = objective(*r, state.x);
-  const Eigen::MatrixXd jacobian = Jacobian(residuals, state.x, *r, options);
   Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
   normal.diagonal().array() += options.precision;
   const Eigen::VectorXd gradient =

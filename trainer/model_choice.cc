@@ -11,6 +11,7 @@
 
 #include "trainer/lifted_motion.h"
 #include "trainer/observer.h"
+#include "trainer/parallel.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -112,8 +113,8 @@ ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
   for (const Candidate& candidate : Candidates(first(), options)) {
     contenders_.push_back({{candidate, 0, {}, {}}, kInfinity});
   }
-  round_order_.resize(contenders_.size());
-  std::iota(round_order_.begin(), round_order_.end(), 0);
+  in_round_.resize(contenders_.size());
+  std::iota(in_round_.begin(), in_round_.end(), 0);
   StartSystem(first(), contenders_[0].model.candidate,
               kSoftestStart);  // throws where there is no body
 }
@@ -157,98 +158,109 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
   return std::exp(sum / static_cast<double>(held_back_.judged.size()));
 }
 
+// Contenders do not depend on each other: the first that have not finished their round go a step,
+// each with its share of the threads.
 bool ModelChoice::Step() {
   if (round_ == kRoundCount) return false;
-  if (round_ < kRoundCount - 1 || Current().model.candidate.is_chain()) {
-    StepCommonFactors();
-  } else {
-    StepSprings();
+  std::vector<Contender*> running;
+  for (int i : in_round_) {
+    const bool room = static_cast<int>(running.size()) < options_.threads;
+    if (room && !contenders_[i].finished) running.push_back(&contenders_[i]);
+  }
+  const int count = static_cast<int>(running.size());
+  TrainOptions options = options_;
+  options.threads = options_.threads / count;
+  ParallelFor(count, count, [&](int i) { StepContender(options, running[i]); });
+  status_ = running[0]->status;
+  if (std::all_of(in_round_.begin(), in_round_.end(),
+                  [this](int i) { return contenders_[i].finished; })) {
+    BeginNextRound();
   }
   return true;
 }
 
 bool ModelChoice::IsChainInRound() const {
-  return std::any_of(round_order_.begin(), round_order_.end(),
+  return std::any_of(in_round_.begin(), in_round_.end(),
                      [this](int i) { return contenders_[i].model.candidate.is_chain(); });
 }
 
 // In the last round a chain has free motions fitted, where others have single springs.
-int ModelChoice::LastGain() const {
-  const bool chain = Current().model.candidate.is_chain();
-  return chain && round_ == kRoundCount - 1 ? kLastGain : kRounds[round_].last_gain;
+int ModelChoice::LastGain(const Candidate& candidate) const {
+  return candidate.is_chain() && round_ == kRoundCount - 1 ? kLastGain : kRounds[round_].last_gain;
 }
 
-void ModelChoice::StepCommonFactors() {
-  ChosenModel& model = Current().model;
+void ModelChoice::StepContender(const TrainOptions& options, Contender* contender) const {
+  if (round_ < kRoundCount - 1 || contender->model.candidate.is_chain()) {
+    StepCommonFactors(options, contender);
+  } else {
+    StepSprings(options, contender);
+  }
+}
+
+void ModelChoice::StepCommonFactors(const TrainOptions& options, Contender* contender) const {
+  ChosenModel& model = contender->model;
   if (model.start_substeps == 0) SearchStart(&model);
-  if (iteration_ == 0) damping_ = 1e-2;
+  if (contender->iteration == 0) contender->damping = 1e-2;
   const LevenbergMarquardtState factors =
-      StepFactors(model, held_back_.FitEpisodes(), options_, kObserverGains[gain_], damping_);
+      StepFactors(model, held_back_.FitEpisodes(), options, kObserverGains[contender->gain],
+                  contender->damping);
   model.factors = factors.x;
-  damping_ = factors.damping;
-  status_ = fmt::format("{}, start values: {:.3f} mm", model.candidate.Label(),
-                        1e3 * std::sqrt(3 * factors.mean_square));
-  if (++iteration_ < kRounds[round_].most_steps && !factors.converged) return;
-  iteration_ = 0;
-  if (++gain_ <= LastGain()) return;
-  FinishContender(model.System(first()));
+  contender->damping = factors.damping;
+  contender->status = fmt::format("{}, start values: {:.3f} mm", model.candidate.Label(),
+                                  1e3 * std::sqrt(3 * factors.mean_square));
+  if (++contender->iteration < kRounds[round_].most_steps && !factors.converged) return;
+  contender->iteration = 0;
+  if (++contender->gain <= LastGain(model.candidate)) return;
+  FinishContender(model.System(first()), contender);
 }
 
-void ModelChoice::StepSprings() {
-  const ChosenModel& model = Current().model;
+void ModelChoice::StepSprings(const TrainOptions& options, Contender* contender) const {
+  const ChosenModel& model = contender->model;
   const Parameters parameters =
       SpringFactors(model.System(first()), first(), model.candidate.free_effects);
-  if (iteration_ == 0) {
-    springs_ = Eigen::VectorXd::Zero(parameters.size());
-    damping_ = 1e-3;
+  if (contender->iteration == 0) {
+    contender->springs = Eigen::VectorXd::Zero(parameters.size());
+    contender->damping = 1e-3;
   }
-  TrackProblem::Options follow = FollowOptions(first(), model.candidate, options_);
+  TrackProblem::Options follow = FollowOptions(first(), model.candidate, options);
   follow.rollout.growth_limit = kInfinity;
-  follow.rollout.observer_gain = kObserverGains[gain_];
+  follow.rollout.observer_gain = kObserverGains[contender->gain];
   TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
   prior.conjugate_gradient_steps = kChoiceConjugateGradients;
-  const GaussNewtonState after =
-      GaussNewtonStep(&problem, {springs_, damping_, mean_square_, false}, prior);
-  springs_ = after.x;
-  damping_ = after.damping;
-  mean_square_ = after.mean_square;
-  status_ = fmt::format("{}, single springs: {:.3f} mm", model.candidate.Label(),
-                        1e3 * std::sqrt(3 * after.mean_square));
-  if (++iteration_ < kRounds[round_].most_steps && !after.converged) return;
-  FinishContender(parameters.Apply(springs_));
+  const GaussNewtonState after = GaussNewtonStep(
+      &problem, {contender->springs, contender->damping, contender->mean_square, false}, prior);
+  contender->springs = after.x;
+  contender->damping = after.damping;
+  contender->mean_square = after.mean_square;
+  contender->status = fmt::format("{}, single springs: {:.3f} mm", model.candidate.Label(),
+                                  1e3 * std::sqrt(3 * after.mean_square));
+  if (++contender->iteration < kRounds[round_].most_steps && !after.converged) return;
+  FinishContender(parameters.Apply(contender->springs), contender);
 }
 
-void ModelChoice::FinishContender(const SpringMassSystem& system) {
-  Contender& contender = Current();
-  const auto error = [&](int gain) {
-    return TrackError(system, contender.model.candidate, kObserverGains[gain]);
-  };
+void ModelChoice::FinishContender(const SpringMassSystem& system, Contender* contender) const {
+  const Candidate& candidate = contender->model.candidate;
+  const auto error = [&](int gain) { return TrackError(system, candidate, kObserverGains[gain]); };
   const int gain = kRounds[round_].last_gain;
   if (round_ < kRoundCount - 1) {
-    contender.score = error(gain);
+    contender->score = error(gain);
   } else if (IsChainInRound()) {  // fitted to free motions, it follows an observer worse
-    contender.score = error(kLastGain);
+    contender->score = error(kLastGain);
   } else {  // bodies whose motions are chaotic do well only under an observer
-    contender.score = 0.5 * (error(gain) + error(kLastGain));
+    contender->score = 0.5 * (error(gain) + error(kLastGain));
   }
-  status_ = fmt::format("{}: {:.3f} mm on held-back frames", contender.model.candidate.Label(),
-                        1e3 * contender.score);
-  if (round_ == kRoundCount - 1 && contender.model.candidate.is_chain()) {
-    contender.score *= kSimpler;
-  }
-  iteration_ = 0;
-  gain_ = kRounds[round_].first_gain;
-  if (++turn_ < static_cast<int>(round_order_.size())) return;
-  BeginNextRound();
+  contender->status =
+      fmt::format("{}: {:.3f} mm on held-back frames", candidate.Label(), 1e3 * contender->score);
+  if (round_ == kRoundCount - 1 && candidate.is_chain()) contender->score *= kSimpler;
+  contender->finished = true;
 }
 
 void ModelChoice::BeginNextRound() {
   const int left_of_each = kRounds[round_].left_of_each;
   ++round_;
-  turn_ = 0;
   const auto better = [&](int i, int j) { return contenders_[i].score < contenders_[j].score; };
-  std::vector<int> next = round_order_;
+  std::vector<int> next = in_round_;
   std::stable_sort(next.begin(), next.end(), better);
   if (round_ == kRoundCount) {
     next.resize(1);
@@ -267,24 +279,36 @@ void ModelChoice::BeginNextRound() {
                               : ", even with a stable sub-step; are its positions in metres?"));
   }
   std::sort(next.begin(), next.end());
-  round_order_ = next;
+  in_round_ = next;
   if (next.size() == 1) round_ = kRoundCount;  // there is nothing left to choose
-  if (round_ < kRoundCount) gain_ = kRounds[round_].first_gain;
+  if (round_ == kRoundCount) return;
+  for (int i : in_round_) {
+    contenders_[i].finished = false;
+    contenders_[i].gain = kRounds[round_].first_gain;
+    contenders_[i].iteration = 0;
+  }
+}
+
+double ModelChoice::PartOfRound(const Contender& contender) const {
+  if (contender.finished) return 1;
+  const Round& round = kRounds[round_];
+  const int gains = LastGain(contender.model.candidate) - round.first_gain + 1;
+  return (contender.gain - round.first_gain +
+          static_cast<double>(contender.iteration) / round.most_steps) /
+         gains;
 }
 
 double ModelChoice::Progress() const {
   if (round_ == kRoundCount) return 1;
   constexpr std::array<double, kRounds.size() + 1> kStart = {0, 0.5, 0.9, 1};
-  const Round& round = kRounds[round_];
-  const int gains = LastGain() - round.first_gain + 1;
-  const double part =
-      (gain_ - round.first_gain + static_cast<double>(iteration_) / round.most_steps) / gains;
-  const double turns = (turn_ + part) / static_cast<double>(round_order_.size());
-  return kStart[round_] + (kStart[round_ + 1] - kStart[round_]) * turns;
+  double part = 0;
+  for (int i : in_round_) part += PartOfRound(contenders_[i]);
+  part /= static_cast<double>(in_round_.size());
+  return kStart[round_] + (kStart[round_ + 1] - kStart[round_]) * part;
 }
 
 ChosenModel ModelChoice::Best() const {
-  const auto best = std::min_element(round_order_.begin(), round_order_.end(), [&](int i, int j) {
+  const auto best = std::min_element(in_round_.begin(), in_round_.end(), [&](int i, int j) {
     return contenders_[i].score < contenders_[j].score;
   });
   ChosenModel model = contenders_[*best].model;
@@ -293,32 +317,30 @@ ChosenModel ModelChoice::Best() const {
 }
 
 void ModelChoice::Save(StateArrays* arrays) const {
-  std::vector<int> counters = {round_, turn_, gain_, iteration_};
-  std::vector<int> in_round(contenders_.size(), 0);
-  for (int i : round_order_) in_round[i] = 1;
-  counters.insert(counters.end(), in_round.begin(), in_round.end());
-  std::vector<double> numbers = {damping_, mean_square_};
+  std::vector<int> counters = {round_};
+  std::vector<double> numbers;
   const auto add = [&](const Eigen::VectorXd& values) {
     numbers.push_back(static_cast<double>(values.size()));
     numbers.insert(numbers.end(), values.begin(), values.end());
   };
-  add(springs_);
-  for (const Contender& contender : contenders_) {
-    numbers.insert(numbers.end(), {contender.score, contender.model.start_substeps});
+  for (std::size_t i = 0; i < contenders_.size(); ++i) {
+    const Contender& contender = contenders_[i];
+    const bool in_round =
+        std::find(in_round_.begin(), in_round_.end(), static_cast<int>(i)) != in_round_.end();
+    counters.insert(counters.end(),
+                    {in_round, contender.finished, contender.gain, contender.iteration});
+    numbers.insert(numbers.end(), {contender.score, contender.damping, contender.mean_square,
+                                   contender.model.start_substeps});
     add(contender.model.start);
     add(contender.model.factors);
+    add(contender.springs);
   }
   (*arrays)["train/choice"] = StoreCounters(counters);
   (*arrays)["train/contenders"] = NpzArray::Doubles({numbers.size()}, numbers.data());
 }
 
 void ModelChoice::Load(const StateArrays& arrays) {
-  const std::vector<int> counters = LoadCounters(arrays, "choice", 4 + contenders_.size());
-  round_ = counters[0], turn_ = counters[1], gain_ = counters[2], iteration_ = counters[3];
-  round_order_.clear();
-  for (std::size_t i = 0; i < contenders_.size(); ++i) {
-    if (counters[4 + i] != 0) round_order_.push_back(static_cast<int>(i));
-  }
+  const std::vector<int> counters = LoadCounters(arrays, "choice", 1 + 4 * contenders_.size());
   const auto found = arrays.find("train/contenders");
   if (found == arrays.end()) {
     throw Error("cannot resume: array 'train/contenders' is missing");
@@ -339,14 +361,22 @@ void ModelChoice::Load(const StateArrays& arrays) {
     values->resize(static_cast<Eigen::Index>(size));
     for (double& value : *values) value = next();
   };
-  damping_ = next();
-  mean_square_ = next();
-  next_vector(&springs_);
-  for (Contender& contender : contenders_) {
+  round_ = counters[0];
+  in_round_.clear();
+  for (std::size_t i = 0; i < contenders_.size(); ++i) {
+    Contender& contender = contenders_[i];
+    const int* counter = &counters[1 + 4 * i];
+    if (counter[0] != 0) in_round_.push_back(static_cast<int>(i));
+    contender.finished = counter[1] != 0;
+    contender.gain = counter[2];
+    contender.iteration = counter[3];
     contender.score = next();
+    contender.damping = next();
+    contender.mean_square = next();
     contender.model.start_substeps = next();
     next_vector(&contender.model.start);
     next_vector(&contender.model.factors);
+    next_vector(&contender.springs);
   }
 }
 

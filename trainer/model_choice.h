@@ -39,8 +39,8 @@ class ModelChoice {
   // Keeps a reference to `data`. Computes in single precision: for a choice that is enough.
   ModelChoice(const FitData& data, const TrainOptions& options);
 
-  // One step of an optimiser. False when the choice is made.
-  // Throws Error if the motion diverges with the start values of every candidate.
+  // One step of an optimiser, of as many candidates at a time as there are threads. False when the
+  // choice is made. Throws Error if the motion diverges with the start values of every candidate.
   bool Step();
   double Progress() const;
   const std::string& status() const { return status_; }
@@ -52,20 +52,25 @@ class ModelChoice {
   void Load(const StateArrays& arrays);
 
  private:
-  // A candidate on its way through the rounds.
+  // A candidate on its way through the rounds, and where its optimiser is.
   struct Contender {
     ChosenModel model;
-    double score = 0;  // infinity where there is none yet
+    double score;                 // of the last round it was in; infinite before
+    bool finished = false;        // with this round
+    int gain = 0, iteration = 0;  // gain: of kObserverGains
+    double damping = 0, mean_square = 0;
+    Eigen::VectorXd springs = {};  // in the last round
+    std::string status = {};
   };
 
   const Recording& first() const { return data_.recordings[0]; }
   bool IsChainInRound() const;
-  int LastGain() const;
-  Contender& Current() { return contenders_[round_order_[turn_]]; }
-  const Contender& Current() const { return contenders_[round_order_[turn_]]; }
-  void StepCommonFactors();
-  void StepSprings();
-  void FinishContender(const SpringMassSystem& system);
+  int LastGain(const Candidate& candidate) const;
+  double PartOfRound(const Contender& contender) const;
+  void StepContender(const TrainOptions& options, Contender* contender) const;
+  void StepCommonFactors(const TrainOptions& options, Contender* contender) const;
+  void StepSprings(const TrainOptions& options, Contender* contender) const;
+  void FinishContender(const SpringMassSystem& system, Contender* contender) const;
   void BeginNextRound();
   void SearchStart(ChosenModel* model) const;
   double TrackError(const SpringMassSystem& system, const Candidate& candidate, double gain) const;
@@ -74,10 +79,8 @@ class ModelChoice {
   TrainOptions options_;
   HeldBack held_back_;
   std::vector<Contender> contenders_;
-  std::vector<int> round_order_;  // the contenders in the round: indices, ascending
-  int round_ = 0, turn_ = 0, gain_ = 0, iteration_ = 0;  // gain_: of kObserverGains
-  double damping_ = 0, mean_square_ = 0;                 // of the optimiser
-  Eigen::VectorXd springs_;                              // of the contender, in the last round
+  std::vector<int> in_round_;  // the contenders in the round: indices, ascending
+  int round_ = 0;
   std::string status_;
 };
 

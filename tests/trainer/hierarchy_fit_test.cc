@@ -133,10 +133,10 @@ TEST(HierarchyFit, UpdatesContactAndResumesThere) {
     more = fit.Step();
     if (fit.Part() != "network") continue;
     const StateArrays saved = fit.Save();
-    moved = moved || !LoadVector(saved, "level/contact", 2).isZero(0);
+    moved = moved || !LoadVector(saved, "trial0/contact", 2).isZero(0);
     HierarchyFit second = c.Fit();
     second.Load(saved);
-    EXPECT_EQ(LoadVector(second.Save(), "level/contact", 2), LoadVector(saved, "level/contact", 2));
+    EXPECT_EQ(LoadVector(second.Save(), "trial0/contact", 2), LoadVector(saved, "trial0/contact", 2));
   }
   EXPECT_TRUE(moved);
 }

@@ -27,7 +27,7 @@ TEST(LevelFit, SoftensAProjectionThatNeedsMoreSubstepsThanLevel0) {
   const GraphNetwork network(options.network.latent, 1);
   LevelFit fit(data, options, twin, network, network.first_weights());
   EXPECT_LE(fit.SubstepsPerSecond(), twin.levels[0].substeps_per_second);
-  ASSERT_TRUE(fit.Step());
+  ASSERT_TRUE(fit.Step(1));
   EXPECT_TRUE(std::isfinite(fit.mean_square()));
 }
 
