@@ -112,9 +112,10 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   result.noise_floor = TrackNoiseFloor(noise);
   const EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits,
                               options.threads, options.journal);
-  EffectLoop loop(fitting, result.noise_floor, result.trained_on, options, kLoopShare);
+  EffectLoop loop(fitting, result.noise_floor, options, kLoopShare);
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
-  if (!loop.FitCommon(known)) {
+  const bool belong = !fitting.bodies()[0].base.effects.empty();  // to the body
+  if (!loop.FitCommon(belong ? std::vector<EffectValues>() : known)) {
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",
                             recordings[0].name, twin.name));
   }

@@ -5,9 +5,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "trainer/fit_model.h"
+#include "twin/effects/registry.h"
 #include "twin/topology.h"
 
 namespace physpring {
@@ -43,8 +46,27 @@ Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording
 
 }  // namespace
 
+bool IsBendingChain(const SpringMassSystem& system) {
+  const bool bends = std::any_of(system.effects.begin(), system.effects.end(),
+                                 [](const EffectValues& e) { return GetEffect(e.name).bends(); });
+  if (!bends || system.order.size() == 0) return false;
+  const int nodes = system.node_count();
+  std::vector<int> along(nodes), place(nodes);
+  std::iota(along.begin(), along.end(), 0);
+  std::sort(along.begin(), along.end(),
+            [&](int i, int j) { return system.order[i] < system.order[j]; });
+  for (int i = 0; i < nodes; ++i) place[along[i]] = i;
+  return std::all_of(system.springs.begin(), system.springs.end(), [&](const auto& spring) {
+    const bool controlled = std::max(spring[0], spring[1]) >= nodes;
+    return controlled || std::abs(place[spring[0]] - place[spring[1]]) == 1;
+  });
+}
+
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on) {
-  DiagnosisBody own{twin.levels[0].system, twin.controller_velocity, !trained_on, "as trained"};
+  const bool chain = IsBendingChain(twin.levels[0].system);
+  DiagnosisBody own{twin.levels[0].system, twin.controller_velocity, chain || !trained_on,
+                    "as trained"};
+  if (chain) return {own};
   own.base.effects.clear();
   if (!trained_on) return {own};
   own.base = MakeAlike(own.base);

@@ -10,15 +10,15 @@
 namespace physpring {
 namespace {
 
-// The values of all effects of a system, one after the other.
-Eigen::VectorXd ValuesOf(const SpringMassSystem& system) {
+// The values of all effects of a system, one after the other: the last `count` of them.
+Eigen::VectorXd LastValuesOf(const SpringMassSystem& system, int count) {
   Eigen::VectorXd values(0);
   for (const EffectValues& effect : system.effects) {
     const Eigen::Index first = values.size();
     values.conservativeResize(first + effect.values.size());
     values.tail(effect.values.size()) = effect.values;
   }
-  return values;
+  return values.tail(count);
 }
 
 // Of the gradients of stretches of rows, which go on in time, scaled to the sum over all of them.
@@ -58,15 +58,16 @@ std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const Effe
   scatter.diagonal().array() += kDiagnosisPrecision;
   const Eigen::MatrixXd robust = covariance * scatter * covariance;
 
-  const Eigen::VectorXd values = ValuesOf(problem.model().Apply(fit.x));
+  const int count = problem.model().effect_size();
+  const Eigen::VectorXd values = LastValuesOf(problem.model().Apply(fit.x), count);
   std::vector<ValueCertainty> certainty;
-  const auto own = size - static_cast<int>(values.size());
+  const int own = size - count;
   for (int i = own; i < size; ++i) {
     // how far the value moves with its entry of x
     Eigen::VectorXd moved = fit.x;
     moved[i] += fitting.difference();
     const double slope =
-        std::abs(ValuesOf(problem.model().Apply(moved))[i - own] - values[i - own]) /
+        std::abs(LastValuesOf(problem.model().Apply(moved), count)[i - own] - values[i - own]) /
         fitting.difference();
     certainty.push_back({slope * std::sqrt(std::max({0.0, covariance(i, i), robust(i, i)})),
                          std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0),

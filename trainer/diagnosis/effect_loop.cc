@@ -36,6 +36,10 @@ std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMa
   for (const Effect* effect : AllEffects()) {
     if (effect->name() == "ground_contact" && !recording.ground) continue;
     if (solid && effect->bends()) continue;
+    const bool has_it =
+        std::any_of(body.effects.begin(), body.effects.end(),
+                    [&](const EffectValues& own) { return own.name == effect->name(); });
+    if (has_it) continue;
     effects.push_back(effect);
   }
   return effects;
@@ -43,11 +47,11 @@ std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMa
 
 }  // namespace
 
-EffectLoop::EffectLoop(const EffectFitting& fitting, double noise_floor, bool trained_on,
+EffectLoop::EffectLoop(const EffectFitting& fitting, double noise_floor,
                        const DiagnosisOptions& options, const WorkShare& share)
     : fitting_(fitting),
       noise_floor_(noise_floor),
-      trained_on_(trained_on),
+      open_(!fitting.bodies()[0].trusted),
       options_(options),
       common_share_(share.Part(0, kCommonPart)),
       rounds_share_(share.Part(kCommonPart, 1)),
@@ -100,7 +104,7 @@ bool EffectLoop::Round(int round) {
   accepted_ = std::move(with_springs);
   common_ = chosen;
   bodies_ = {{}, {chosen}};
-  if (!trained_on_ || !options_.train_anew || explained) return true;
+  if (!open_ || !options_.train_anew || explained) return true;
   const auto anew = TrainAnew(fitting_, stage.Part(kTrainingPart, 1), accepted_);
   if (anew && IsSurelyBetter(*anew, accepted_)) accepted_ = *anew;
   return true;
@@ -197,7 +201,7 @@ EffectRanking EffectLoop::Rank(const EffectSearchResult& search, std::size_t cho
 
 // Single springs, too, of all these at the same time.
 void EffectLoop::RefitSprings(const WorkShare& stage, const std::vector<EffectFit*>& fits) const {
-  if (!trained_on_) return;
+  if (!open_) return;
   const int count = static_cast<int>(fits.size());
   fitting_.journal().Stage(stage, count * kSpringSteps, "refitting single springs");
   ParallelFor(count, options_.threads, [&](int i) {

@@ -14,9 +14,9 @@ namespace physpring {
 
 class EffectLoop {
  public:
-  // `share`: of all work, what the loop is. `trained_on`: the twin was trained on these recordings.
-  EffectLoop(const EffectFitting& fitting, double noise_floor, bool trained_on,
-             const DiagnosisOptions& options, const WorkShare& share);
+  // `share`: of all work, what the loop is.
+  EffectLoop(const EffectFitting& fitting, double noise_floor, const DiagnosisOptions& options,
+             const WorkShare& share);
 
   // The refit of common factors without a new effect, with those that are known; false if the model
   // diverges.
@@ -51,7 +51,7 @@ class EffectLoop {
 
   const EffectFitting& fitting_;
   double noise_floor_;
-  bool trained_on_;
+  bool open_;  // single springs are refitted, too
   DiagnosisOptions options_;
   WorkShare common_share_, rounds_share_;
   std::vector<const Effect*> effects_;

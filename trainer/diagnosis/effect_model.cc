@@ -18,7 +18,8 @@ Eigen::VectorXd EffectModel::OwnValues(const Eigen::VectorXd& x) const {
 
 SpringMassSystem EffectModel::Apply(const Eigen::VectorXd& x) const {
   SpringMassSystem system = own_.Apply(OwnValues(x));
-  system.effects = effects_.Apply(x.tail(effects_.size()));
+  const std::vector<EffectValues> effects = effects_.Apply(x.tail(effects_.size()));
+  system.effects.insert(system.effects.end(), effects.begin(), effects.end());
   return system;
 }
 
@@ -30,7 +31,9 @@ Eigen::VectorXd EffectModel::Adjoint(const Eigen::VectorXd& x, const SpringMassS
   const Eigen::ArrayXd part = values.array() / range_.limit;
   bar.head(own_.size()) =
       range_.scale * (1 - part.square()) * own_.Adjoint(values, system, gradient).array();
-  bar.tail(effects_.size()) = effects_.Adjoint(x.tail(effects_.size()), gradient.effects);
+  const auto own_effects = static_cast<std::ptrdiff_t>(own_.base().effects.size());
+  bar.tail(effects_.size()) = effects_.Adjoint(
+      x.tail(effects_.size()), {gradient.effects.begin() + own_effects, gradient.effects.end()});
   return bar;
 }
 

@@ -4,7 +4,8 @@
 // after the other:
 //   own:      limit tanh(scale x / limit), or scale x without a limit
 //   effects:  effect_entries.h
-// Zero is the base system with the effects at their start.
+// Zero is the base system with the effects at their start. Effects of the base itself stay as they
+// are, before these.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_MODEL_H_
 
@@ -27,10 +28,10 @@ class EffectModel {
     double limit = std::numeric_limits<double>::infinity();  // of what is handed to `own`
   };
 
-  // The base system of `own` must have no effects itself.
   EffectModel(Parameters own, OwnRange range, std::vector<EffectValues> start);
 
   int size() const { return own_.size() + effects_.size(); }
+  int effect_size() const { return effects_.size(); }
   const Parameters& own() const { return own_; }
 
   SpringMassSystem Apply(const Eigen::VectorXd& x) const;

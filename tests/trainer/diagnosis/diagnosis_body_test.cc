@@ -51,5 +51,42 @@ TEST(IsSolid, ARodOfKnownOrderIsNot) {
   EXPECT_FALSE(IsSolid(bundle));
 }
 
+// Nodes joined to the next, numbered from both ends towards the middle.
+Twin BendingChain() {
+  Twin twin;
+  SpringMassSystem system = Grid(1, 6, 1);
+  system.order.resize(6);
+  system.order << 0, 2, 4, 5, 3, 1;
+  system.springs = {{0, 5}, {5, 1}, {1, 4}, {4, 2}, {2, 3}};
+  system.effects = {{"bending", Eigen::VectorXd::Constant(1, 1e-3)}};
+  twin.levels.push_back({system, {}, 0});
+  return twin;
+}
+
+TEST(IsBendingChain, OneThatBendsIs) {
+  EXPECT_TRUE(IsBendingChain(BendingChain().levels[0].system));
+}
+
+TEST(IsBendingChain, OneWithoutBendingOrWithLongerSpringsIsNot) {
+  SpringMassSystem system = BendingChain().levels[0].system;
+  system.effects[0] = {"tension_only", Eigen::VectorXd::Ones(1)};
+  EXPECT_FALSE(IsBendingChain(system));
+  system = BendingChain().levels[0].system;
+  system.springs.push_back({0, 1});
+  EXPECT_FALSE(IsBendingChain(system));
+  system = BendingChain().levels[0].system;
+  system.order.resize(0);
+  EXPECT_FALSE(IsBendingChain(system));
+}
+
+TEST(BodiesOf, AChainIsTheOnlyBodyAndKeepsItsBending) {
+  const Twin twin = BendingChain();
+  const std::vector<DiagnosisBody> bodies = BodiesOf(twin, {}, true);
+  ASSERT_EQ(bodies.size(), 1U);
+  EXPECT_TRUE(bodies[0].trusted);
+  ASSERT_EQ(bodies[0].base.effects.size(), 1U);
+  EXPECT_EQ(bodies[0].base.effects[0].name, "bending");
+}
+
 }  // namespace
 }  // namespace physpring

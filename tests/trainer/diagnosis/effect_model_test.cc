@@ -52,10 +52,25 @@ TEST(EffectModel, MovesItsOwnParametersNoFartherThanTheLimit) {
   EXPECT_NEAR(model.Apply(x).stiffness[0], std::exp(kLimit) * base.stiffness[0], 1e-9);
 }
 
-// The adjoint J^T u and the differences J v of the whole problem: u . J v = J^T u . v.
-TEST(EffectModel, HasTheAdjointOfTheProblem) {
+TEST(EffectModel, KeepsTheEffectsOfTheBase) {
+  SpringMassSystem base = RandomSystem(25, 2, 1);
+  base.effects = {{"gravity_direction", Eigen::Vector2d(0.1, 0)}};
+  const EffectModel model = MakeModel(base);
+  const SpringMassSystem system = model.Apply(Eigen::VectorXd::Constant(model.size(), 0.1));
+  ASSERT_EQ(system.effects.size(), 3U);
+  EXPECT_EQ(system.effects[0].values, base.effects[0].values);
+  EXPECT_EQ(system.effects[1].name, "air_drag");
+}
+
+// The adjoint J^T u and the differences J v of the whole problem: u . J v = J^T u . v; with an
+// effect of the base, too.
+class AdjointOfTheProblem : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(BaseHasAnEffect, AdjointOfTheProblem, testing::Bool());
+
+TEST_P(AdjointOfTheProblem, IsTransposedToItsDifferences) {
   Random random(2);
-  const SpringMassSystem base = RandomSystem(25, 2, 1);
+  SpringMassSystem base = RandomSystem(25, 2, 1);
+  if (GetParam()) base.effects = {{"gravity_direction", Eigen::Vector2d(0.1, 0)}};
   Recording recording;
   recording.fps = 50;
   recording.start = base.position;
