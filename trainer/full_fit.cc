@@ -123,18 +123,18 @@ void FullFit::StepGaussNewton() {
   state_.mean_square = after.mean_square;
   status_ = fmt::format("single springs: {:.3f} mm", PointMillimetres(after.mean_square));
   const bool first_step = state_.iteration++ == 0;
+  const bool stuck = IsStuck(before, after, first_step);
   const bool gained = first_step || after.mean_square < kSlowStep * before.mean_square;
   state_.slow = gained ? 0 : state_.slow + 1;
   if (state_.gain < kLastGain) {
-    if (!after.converged && state_.slow < kMostSlowSteps && state_.iteration < kFollowedSteps)
-      return;
+    if (!stuck && state_.slow < kMostSlowSteps && state_.iteration < kFollowedSteps) return;
     ++state_.gain;
     state_.iteration = state_.slow = 0;
     state_.damping = 1e-3;
     return;
   }
   // with little to gain early on, the residuals are too rough for it
-  if (after.converged || state_.slow == kMostSlowSteps || state_.iteration >= GaussNewtonSteps()) {
+  if (stuck || state_.slow == kMostSlowSteps || state_.iteration >= GaussNewtonSteps()) {
     BeginAdam(state_.iteration < GaussNewtonSteps());
   }
 }

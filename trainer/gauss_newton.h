@@ -48,6 +48,12 @@ constexpr int kMostSlowSteps = 2;
 GaussNewtonState GaussNewtonStep(LeastSquares* problem, const GaussNewtonState& state,
                                  const GaussNewtonOptions& options);
 
+// Whether a fit ends with this step: stronger dampings hardly ever help where no length of a step
+// did, except at the start.
+inline bool IsStuck(const GaussNewtonState& before, const GaussNewtonState& after, bool first) {
+  return after.converged || (!first && after.x == before.x);
+}
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TRAINER_GAUSS_NEWTON_H_

@@ -228,14 +228,16 @@ void ModelChoice::StepSprings(const TrainOptions& options, Contender* contender)
   TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
   prior.conjugate_gradient_steps = kChoiceConjugateGradients;
-  const GaussNewtonState after = GaussNewtonStep(
-      &problem, {contender->springs, contender->damping, contender->mean_square, false}, prior);
+  const GaussNewtonState before{contender->springs, contender->damping, contender->mean_square,
+                                false};
+  const GaussNewtonState after = GaussNewtonStep(&problem, before, prior);
   contender->springs = after.x;
   contender->damping = after.damping;
   contender->mean_square = after.mean_square;
   contender->status = fmt::format("{}, single springs: {:.3f} mm", model.candidate.Label(),
                                   1e3 * std::sqrt(3 * after.mean_square));
-  if (++contender->iteration < kRounds[round_].most_steps && !after.converged) return;
+  const bool stuck = IsStuck(before, after, contender->iteration == 0);
+  if (++contender->iteration < kRounds[round_].most_steps && !stuck) return;
   FinishContender(parameters.Apply(contender->springs), contender);
 }
 

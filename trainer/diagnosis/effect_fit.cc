@@ -222,14 +222,14 @@ void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
     state.converged = false;
     int slow = 0;
     for (int step = 0; step < (followed ? kFollowedSpringSteps : steps); ++step) {
-      const double before = state.mean_square;
+      const GaussNewtonState before = state;
       PieceKey key = KeyOf("Gauss-Newton", *fit);
       const Eigen::VectorXd after =
           journal().Get(key.Add(fit->x).Add(gain).Add(state.x).Add(state.damping),
                         [&] { return Pack(GaussNewtonStep(&problem, state, prior)); });
       Unpack(after, &state);
-      slow = step > 0 && state.mean_square > kSlowStep * before ? slow + 1 : 0;
-      if (state.converged || slow == kMostSlowSteps) break;
+      slow = step > 0 && state.mean_square > kSlowStep * before.mean_square ? slow + 1 : 0;
+      if (slow == kMostSlowSteps || IsStuck(before, state, step == 0)) break;
     }
   }
   EffectProblem problem = MakeProblem(model, bodies_[fit->body], 0, threads_);
