@@ -34,6 +34,7 @@ std::string DescribeSprings(const LevelPlan& plan) {
       return "Springs are the edges of 1-D flexes, grouped by stiffness: an approximation of the "
              "twin.";
     case SpringKind::kTendon:
+    case SpringKind::kAuto:  // a plan has no open choice
       break;
   }
   return "Each spring is a spatial tendon.";

@@ -84,6 +84,7 @@ Springs::Springs(const mjModel* model, int instance)
       next_(state_.size()),
       force_(state_.size()),
       ways_(springs_->level.bodies.controllers.size()),
+      controller_velocity_(3, static_cast<Eigen::Index>(ways_.size())),
       lag_(3 * static_cast<std::size_t>(nodes())) {
   const std::string where = Attributes(model, instance).where();
   CheckOptions(model, springs_->level, where);
@@ -152,6 +153,7 @@ void Springs::ReadControllers(const mjModel* model, const mjData* data, double t
       way.from = now;
       way.velocity = Eigen::Map<const Vector>(velocity + 3);
     }
+    controller_velocity_.col(static_cast<Eigen::Index>(c)) = way.velocity;
   }
 }
 
@@ -185,8 +187,8 @@ void Springs::Substep(double time, double elapsed, double h, const Contact<doubl
   std::fill(force_.begin(), force_.end(), NodeForce<double>{});
   const SpringView<double> springs = springs_->springs.View();
   if (springs_->effects) {
-    springs_->effects->AddForces({kernel, springs, time + elapsed, h, state_}, &next_, &force_,
-                                 &effect_buffers_);
+    springs_->effects->AddForces({kernel, springs, time + elapsed, h, state_, controller_velocity_},
+                                 &next_, &force_, &effect_buffers_);
   } else {
     kernel.add_spring_forces(springs, state_.data(), force_.data());
   }

@@ -89,6 +89,7 @@ class Springs {
   Contact<double>::Impacts impacts_;
   EffectBuffers<double> effect_buffers_;
   std::vector<Way> ways_;
+  Points controller_velocity_;  // 3 x controllers, m/s
   std::vector<double> lag_;
   bool is_computed_ = false;
 };

@@ -93,6 +93,13 @@ void Simulator<Real>::PlaceControllers(const FrameInput& input, int substep, Sta
 }
 
 template <class Real>
+void Simulator<Real>::SetControllerVelocity(const FrameInput& input, Workspace* workspace) const {
+  if (!effects_) return;
+  workspace->controller_velocity =
+      (input.controllers_end - input.controllers_start) / options_.frame_time;
+}
+
+template <class Real>
 void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs,
                               int substep, State* state, State* next,
                               typename Contact<Real>::Impacts* impacts,
@@ -101,7 +108,8 @@ void Simulator<Real>::Substep(const FrameInput& input, const typename Contact<Re
   NodeForces<Real>& force = workspace->force;
   std::fill(force.begin(), force.end(), NodeForce<Real>{});
   if (effects_) {
-    effects_->AddForces(NowOf(input, substep, *state), next, &force, &workspace->effects);
+    effects_->AddForces(NowOf(input.time, substep, *state, workspace->controller_velocity), next,
+                        &force, &workspace->effects);
   } else {
     kernel_->add_spring_forces(springs_.View(), state->data(), force.data());
   }
@@ -127,8 +135,9 @@ void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* w
                                        state_bar->data(), workspace->spring_gradient.View());
     return;
   }
-  effects_->AddForcesAdjoint(NowOf(workspace->input, substep, state), workspace->force, state_bar,
-                             workspace->spring_gradient.View(), &workspace->effects);
+  effects_->AddForcesAdjoint(
+      NowOf(workspace->input.time, substep, state, workspace->controller_velocity),
+      workspace->force, state_bar, workspace->spring_gradient.View(), &workspace->effects);
   effects_->TakeControllers(static_cast<double>(substep + 1) / options_.substeps,
                             options_.controller_velocity ? options_.frame_time : 0, state_bar,
                             &workspace->effects);
@@ -138,6 +147,7 @@ template <class Real>
 void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
                                    Workspace* workspace) const {
   const auto pairs = contact_.FindPairs(*state, options_.frame_time);
+  SetControllerVelocity(input, workspace);
   if (workspace->impacts.empty()) workspace->impacts.resize(1);
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, pairs, i, state, &workspace->next, &workspace->impacts[0], workspace);
@@ -159,6 +169,7 @@ template <class Real>
 void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
                                   Workspace* workspace) const {
   const auto pairs = contact_.FindPairs(*state, options_.frame_time);
+  SetControllerVelocity(input, workspace);
   workspace->states.resize(options_.substeps + 1, State(state->size()));
   workspace->impacts.resize(options_.substeps);
   workspace->states[0] = *state;
@@ -189,7 +200,7 @@ void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gra
   SystemGradient frame(effects_->changed().system);
   AddGradients(*workspace, &frame);
   effects_->FinishGradient(workspace->input.delay_rate_start, workspace->input.delay_rate_end,
-                           workspace->effects, &frame);
+                           options_.frame_time, workspace->effects, &frame);
   *gradient += frame;
 }
 

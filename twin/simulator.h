@@ -79,6 +79,7 @@ class Simulator {
   int node_count() const { return nodes_; }
 
  private:
+  void SetControllerVelocity(const FrameInput& input, Workspace* workspace) const;
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
   void Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs, int substep,
                State* state, State* next, typename Contact<Real>::Impacts* impacts,
@@ -90,9 +91,10 @@ class Simulator {
   int state_size() const {
     return springs_.spare_node + 1 + (effects_ ? effects_->extra_records() : 0);
   }
-  EffectSubstep<Real> NowOf(const FrameInput& input, int substep, const State& state) const {
-    const double time = input.time + substep * options_.frame_time / options_.substeps;
-    return {*kernel_, springs_.View(), time, options_.frame_time / options_.substeps, state};
+  EffectSubstep<Real> NowOf(double start, int substep, const State& state,
+                            const Points& controller_velocity) const {
+    const double h = options_.frame_time / options_.substeps;
+    return {*kernel_, springs_.View(), start + substep * h, h, state, controller_velocity};
   }
 
   NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
@@ -131,7 +133,8 @@ class Simulator<Real>::Workspace {
   ContactGradient<Real> contact_gradient;
 
   EffectBuffers<Real> effects;
-  FrameInput input;  // of the frame that was recorded last; only effects need it
+  Points controller_velocity;  // 3 x controllers, m/s, in the frame; only effects need it
+  FrameInput input;            // of the frame that was recorded last; only effects need it
 };
 
 }  // namespace physpring

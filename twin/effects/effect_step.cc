@@ -111,16 +111,18 @@ void EffectStep<Real>::TakeControllers(double fraction, double frame_time, State
 
 template <class Real>
 void EffectStep<Real>::FinishGradient(const Points& start_rate, const Points& end_rate,
-                                      const EffectBuffers<Real>& buffers,
+                                      double frame_time, const EffectBuffers<Real>& buffers,
                                       SystemGradient* gradient) const {
   tensions_.AddGradient(buffers.tension, gradient);
   *gradient += buffers.gradient[0];
   double delay_bar = 0;
+  // forward: velocity = (end - start) / frame_time
+  const Points velocity_bar = buffers.tension.controller_velocity_bar / frame_time;
   if (start_rate.cols() == buffers.start_bar.cols()) {
-    delay_bar += buffers.start_bar.cwiseProduct(start_rate).sum();
+    delay_bar += (buffers.start_bar - velocity_bar).cwiseProduct(start_rate).sum();
   }
   if (end_rate.cols() == buffers.end_bar.cols()) {
-    delay_bar += buffers.end_bar.cwiseProduct(end_rate).sum();
+    delay_bar += (buffers.end_bar + velocity_bar).cwiseProduct(end_rate).sum();
   }
   effects_.ChangeAdjoint(delay_bar, gradient);
 }

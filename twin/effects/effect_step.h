@@ -58,7 +58,7 @@ class EffectStep {
   // Adds the sums of a frame to `gradient`, which holds those with respect to the changed system
   // so far, and turns it into one with respect to the system and its effects. start_rate and
   // end_rate: see FrameInput.
-  void FinishGradient(const Points& start_rate, const Points& end_rate,
+  void FinishGradient(const Points& start_rate, const Points& end_rate, double frame_time,
                       const EffectBuffers<Real>& buffers, SystemGradient* gradient) const;
 
  private:

@@ -24,6 +24,7 @@ class LawTension : public SpringTension {
   explicit LawTension(const Eigen::VectorXd& values) : values_(values) {}
 
   bool has_internal() const override { return Law<double>::kHasInternal; }
+  bool feels_pull() const override { return kFeelsPull; }
 
   void Add(const SpringMoments<float>& springs, const float* z, float* z_after,
            float* tension) const override {
@@ -43,6 +44,8 @@ class LawTension : public SpringTension {
   }
 
  private:
+  static constexpr bool kFeelsPull = requires { Law<double>::kFeelsPull; };
+
   template <class Real>
   void AddLaw(const SpringMoments<Real>& springs, const Real* z, Real* z_after,
               Real* tension) const {
@@ -71,6 +74,7 @@ class LawTension : public SpringTension {
       bar.rate[i] += moment.rate;
       bar.stiffness[i] += moment.stiffness;
       bar.rest_length[i] += moment.rest_length;
+      if constexpr (kFeelsPull) bar.pull[i] += moment.pull;
       if (Law<Real>::kHasInternal) bar.internal[i] = z_bar;
       for (int n = 0; n < Law<Real>::kValues; ++n) {
         bar.values[n * springs.count + i] += values[n];

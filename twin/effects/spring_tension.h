@@ -15,26 +15,29 @@ struct SpringMoment {
   Real rate = 0;         // of change of the length, m/s
   Real stiffness = 0;    // k of the spring, N/m
   Real rest_length = 0;  // L of the spring, m
+  // Part of the rate that is a controller's own motion, m/s; also where dashpots take controllers
+  // as standing still.
+  Real pull = 0;
 };
 
 // The same of all springs in a sub-step, and the sub-step.
 template <class Real>
 struct SpringMoments {
   int count;
-  const Real *length, *rate, *stiffness, *rest_length;  // (count)
-  double time;                                          // s since the start of the recording
-  double step;                                          // length of the sub-step, s
+  const Real *length, *rate, *stiffness, *rest_length, *pull;  // (count)
+  double time;                                                 // s since the start of the recording
+  double step;                                                 // length of the sub-step, s
 
   SpringMoment<Real> operator[](int i) const {
-    return {length[i], rate[i], stiffness[i], rest_length[i]};
+    return {length[i], rate[i], stiffness[i], rest_length[i], pull[i]};
   }
 };
 
 // Derivatives of a loss.
 template <class Real>
 struct TensionGradient {
-  const Real* tension;                            // (count) given
-  Real *length, *rate, *stiffness, *rest_length;  // (count) added to
+  const Real* tension;                                   // (count) given
+  Real *length, *rate, *stiffness, *rest_length, *pull;  // (count) added to
   Real* internal;  // (count) in d loss / d variables after the sub-step, out before
   Real* values;    // (count x values) added to: of the effect, each spring's share
 };
@@ -46,6 +49,9 @@ class SpringTension {
 
   // Whether springs have an internal variable, z. If not, what stands for z below is not read.
   virtual bool has_internal() const = 0;
+  // Whether the controllers' pull counts. If not, it may be given as 0, and nothing is added to its
+  // derivative.
+  virtual bool feels_pull() const { return false; }
 
   // Adds the extra tension [N] of each spring; it pulls the ends together. z: before the sub-step;
   // sets z_after.

@@ -1,26 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/effects/tension_step.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "twin/effects/registry.h"
+#include "twin/spring_law.h"
 
 namespace physpring {
+namespace {
+
+// How fast the node and the controller of a spring come apart, and along which direction.
+template <class Real>
+struct Pull {
+  Eigen::Vector3d velocity, direction;
+  double length;
+
+  Pull(const EffectSubstep<Real>& now, int controllers_begin, int controller, int node)
+      : velocity(now.controller_velocity.col(controller)) {
+    const NodeState<Real>& held = now.state[controllers_begin + controller];
+    for (int j = 0; j < 3; ++j) {
+      direction[j] = static_cast<double>(held.x[j]) - static_cast<double>(now.state[node].x[j]);
+    }
+    length = direction.norm();
+    direction = length < kShortest ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(direction / length);
+  }
+  double Along() const { return velocity.dot(direction); }
+};
+
+}  // namespace
 
 template <class Real>
 TensionStep<Real>::TensionStep(const SpringMassSystem& system, int springs, int first_record)
-    : springs_(springs), end_record_(first_record) {
+    : nodes_(system.node_count()),
+      controllers_(system.controllers),
+      springs_(springs),
+      end_record_(first_record) {
   for (std::size_t i = 0; i < system.effects.size(); ++i) {
     const EffectValues& effect = system.effects[i];
     auto law = GetEffect(effect.name).MakeTension(effect.values);
     if (!law) continue;
+    feels_pull_ |= law->feels_pull();
     const int records = law->has_internal() ? springs / kRecordSize : 0;
     tensions_.push_back({i, effect.values.size(), std::move(law), end_record_});
     end_record_ += records;
   }
 }
 
-// Lengths and rates, with a force_bar tension_bar, too; no tension yet.
+template <class Real>
+template <class Visit>
+void TensionStep<Real>::ForEachPulled(const SpringView<Real>& springs, Visit visit) const {
+  for (int i = 0; i < springs_; ++i) {
+    const auto [node, other] = std::minmax({springs.a[i / kSpringBlock], springs.b[i]});
+    const int controller = other - nodes_;
+    if (controller < 0 || controller >= controllers_ || node >= nodes_) continue;
+    visit(i, controller, node);
+  }
+}
+
+template <class Real>
+void TensionStep<Real>::MeasurePull(const EffectSubstep<Real>& now,
+                                    TensionBuffers<Real>* buffers) const {
+  ForEachPulled(now.springs, [&](int spring, int controller, int node) {
+    buffers->pull[spring] = static_cast<Real>(Pull<Real>(now, nodes_, controller, node).Along());
+  });
+}
+
+template <class Real>
+void TensionStep<Real>::MeasurePullAdjoint(const EffectSubstep<Real>& now, State* state_bar,
+                                           TensionBuffers<Real>* buffers) const {
+  ForEachPulled(now.springs, [&](int spring, int controller, int node) {
+    const Pull<Real> pull(now, nodes_, controller, node);
+    const double bar = static_cast<double>(buffers->pull_bar[spring]);
+    if (bar == 0 || pull.length < kShortest) return;
+    // forward: pull = v . d / |d|, d = x_controller - x_node
+    buffers->controller_velocity_bar.col(controller) += bar * pull.direction;
+    const Eigen::Vector3d d_bar =
+        bar / pull.length * (pull.velocity - pull.Along() * pull.direction);
+    for (int j = 0; j < 3; ++j) {
+      (*state_bar)[nodes_ + controller].x[j] += static_cast<Real>(d_bar[j]);
+      (*state_bar)[node].x[j] -= static_cast<Real>(d_bar[j]);
+    }
+  });
+}
+
+// Lengths, rates and pulls, with a force_bar tension_bar, too; no tension yet.
 template <class Real>
 SpringMoments<Real> TensionStep<Real>::Measure(const EffectSubstep<Real>& now,
                                                const NodeForce<Real>* force_bar,
@@ -29,6 +93,8 @@ SpringMoments<Real> TensionStep<Real>::Measure(const EffectSubstep<Real>& now,
   buffers->rate.resize(springs_);
   buffers->tension_bar.resize(springs_);
   buffers->tension.assign(springs_, 0);
+  buffers->pull.resize(springs_);
+  if (feels_pull_) MeasurePull(now, buffers);
   now.kernel.measure_springs(
       now.springs, now.state.data(), force_bar,
       {buffers->length.data(), buffers->rate.data(), buffers->tension_bar.data()});
@@ -37,6 +103,7 @@ SpringMoments<Real> TensionStep<Real>::Measure(const EffectSubstep<Real>& now,
           buffers->rate.data(),
           now.springs.stiffness,
           now.springs.rest_length,
+          buffers->pull.data(),
           now.time,
           now.step};
 }
@@ -58,6 +125,7 @@ void TensionStep<Real>::AddForces(const EffectSubstep<Real>& now, State* next,
 
 template <class Real>
 void TensionStep<Real>::ClearGradient(TensionBuffers<Real>* buffers) const {
+  buffers->controller_velocity_bar.setZero(3, controllers_);
   buffers->values_bar.resize(tensions_.size());
   for (std::size_t i = 0; i < tensions_.size(); ++i) {
     buffers->values_bar[i].assign(tensions_[i].values * springs_, 0);
@@ -74,19 +142,21 @@ void TensionStep<Real>::AddForcesAdjoint(const EffectSubstep<Real>& now,
     const SpringMoments<Real> moments = Measure(now, force_bar.data(), buffers);
     buffers->length_bar.assign(springs_, 0);
     buffers->rate_bar.assign(springs_, 0);
+    buffers->pull_bar.assign(springs_, 0);
     for (std::size_t i = 0; i < tensions_.size(); ++i) {
       const int record = tensions_[i].record;
       tensions_[i].law->AddAdjoint(
           moments, Internal(now.state, record),
           {buffers->tension_bar.data(), buffers->length_bar.data(), buffers->rate_bar.data(),
-           gradient.stiffness, gradient.rest_length, Internal(state_bar, record),
-           buffers->values_bar[i].data()},
+           gradient.stiffness, gradient.rest_length, buffers->pull_bar.data(),
+           Internal(state_bar, record), buffers->values_bar[i].data()},
           buffers->tension.data());
     }
     springs.tension = buffers->tension.data();
     gradient.length = buffers->length_bar.data();
     gradient.rate = buffers->rate_bar.data();
   }
+  if (feels_pull_) MeasurePullAdjoint(now, state_bar, buffers);
   now.kernel.add_spring_forces_adjoint(springs, now.state.data(), force_bar.data(),
                                        state_bar->data(), gradient);
 }

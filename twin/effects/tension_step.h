@@ -36,12 +36,15 @@ struct EffectSubstep {
   double time;  // s since the start of the recording
   double step;  // its length, s
   const NodeStates<Real>& state;
+  const Points& controller_velocity;  // 3 x controllers, m/s
 };
 
 // What sub-steps work in, and the sums of a frame's adjoint.
 template <class Real>
 struct TensionBuffers {
-  std::vector<Real> length, rate, tension, tension_bar, length_bar, rate_bar;  // (springs)
+  std::vector<Real> length, rate, pull, tension;                  // (springs)
+  std::vector<Real> tension_bar, length_bar, rate_bar, pull_bar;  // (springs)
+  Points controller_velocity_bar;             // 3 x controllers, summed over sub-steps
   std::vector<std::vector<Real>> values_bar;  // of each effect, see TensionGradient
 };
 
@@ -81,7 +84,16 @@ class TensionStep {
   SpringMoments<Real> Measure(const EffectSubstep<Real>& now, const NodeForce<Real>* force_bar,
                               TensionBuffers<Real>* buffers) const;
 
+  // Calls visit(spring, controller, node) for the springs that join a controller to a node.
+  template <class Visit>
+  void ForEachPulled(const SpringView<Real>& springs, Visit visit) const;
+  void MeasurePull(const EffectSubstep<Real>& now, TensionBuffers<Real>* buffers) const;
+  void MeasurePullAdjoint(const EffectSubstep<Real>& now, State* state_bar,
+                          TensionBuffers<Real>* buffers) const;
+
+  int nodes_, controllers_;
   int springs_, end_record_;
+  bool feels_pull_ = false;  // one of the laws
   std::vector<Tension> tensions_;
 };
 

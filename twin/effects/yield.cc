@@ -3,7 +3,10 @@
 // the elastic stretch l - L - p stays within +-y:
 //   p <- clamp(p, l - L - y, l - L + y),   extra tension -k p
 // The threshold is a length, the same for all springs (MuJoCo's), plus a strain times the rest
-// length. If both are 0 nothing yields.
+// length. If both are 0 nothing yields. Springs of controllers yield by where these were a lag
+// before: l is less by lag times the pull (spring_tension.h). MuJoCo's springs of mocap bodies have
+// a lag of its time step: it moves p to l + h J v with the velocities after the kick, those of
+// mocap bodies counted as 0. A hand that is commanded rather than measured has one, too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,16 +20,18 @@ namespace {
 template <class Real>
 class YieldLaw {
  public:
-  static constexpr int kValues = 2;
+  static constexpr int kValues = 3;
   static constexpr bool kHasInternal = true;
+  static constexpr bool kFeelsPull = true;
 
   YieldLaw(const Eigen::VectorXd& values, double /*time*/, double /*step*/)
-      : stretch_(values.isZero(0) ? std::numeric_limits<Real>::infinity()
-                                  : static_cast<Real>(values[0])),
-        strain_(static_cast<Real>(values[1])) {}
+      : stretch_(values.head<2>().isZero(0) ? std::numeric_limits<Real>::infinity()
+                                            : static_cast<Real>(values[0])),
+        strain_(static_cast<Real>(values[1])),
+        lag_(static_cast<Real>(values[2])) {}
 
   Real Tension(const SpringMoment<Real>& s, Real* p) const {
-    const Real stretch = s.length - s.rest_length;
+    const Real stretch = s.length - s.rest_length - lag_ * s.pull;
     const Real threshold = stretch_ + strain_ * s.rest_length;
     *p = std::min(std::max(*p, stretch - threshold), stretch + threshold);
     return -s.stiffness * *p;
@@ -39,18 +44,21 @@ class YieldLaw {
     // forward: T = -k p
     bar->stiffness -= tension_bar * after;
     *p_bar -= tension_bar * s.stiffness;
-    // forward: p = l - L -+ (y_m + y L), if it yields
+    // forward: p = l - L - lag pull -+ (y_m + y L), if it yields
     const Real yield_bar = after == p ? 0 : *p_bar;
     const Real threshold_bar = after > p ? -yield_bar : yield_bar;
     bar->length += yield_bar;
     bar->rest_length += strain_ * threshold_bar - yield_bar;
     values_bar[0] += threshold_bar;
     values_bar[1] += threshold_bar * s.rest_length;
+    bar->pull -= lag_ * yield_bar;
+    values_bar[2] -= s.pull * yield_bar;
     *p_bar -= yield_bar;
   }
 
  private:
   Real stretch_, strain_;  // where it yields
+  Real lag_;               // s
 };
 
 class Yield : public Effect {
@@ -59,14 +67,15 @@ class Yield : public Effect {
   std::vector<EffectParameter> parameters() const override {
     using Spacing = EffectParameter::Spacing;
     return {{"yield_stretch_m", 0, 1, 1, 1, Spacing::kLogarithmic},
-            {"yield_strain", 0, 10, 1, 1, Spacing::kLogarithmic}};
+            {"yield_strain", 0, 10, 1, 1, Spacing::kLogarithmic},
+            {"controller_lag_s", 0, 0.02, 1e-4}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const override {
     std::vector<Eigen::VectorXd> starts;
     const double length = system.rest_length.mean();
     for (double strain : {0.01, 0.03, 0.1, 0.3}) {
-      starts.emplace_back(Eigen::Vector2d(strain * length, 0));
-      starts.emplace_back(Eigen::Vector2d(0, strain));
+      starts.emplace_back(Eigen::Vector3d(strain * length, 0, 0));
+      starts.emplace_back(Eigen::Vector3d(0, strain, 0));
     }
     return starts;
   }
@@ -74,12 +83,10 @@ class Yield : public Effect {
     return std::make_unique<LawTension<YieldLaw>>(values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
-    EffectMjcf mjcf{
-        EffectMjcf::Carrier::kTendon,
-        {},
-        {},
-        "MuJoCo lets the springs of a mocap body pass the threshold by how far it moves "
-        "in a time step"};
+    EffectMjcf mjcf{EffectMjcf::Carrier::kTendon,
+                    {},
+                    {},
+                    "MuJoCo gives the springs of a mocap body a lag of its time step"};
     for (int e = 0; e < system.spring_count(); ++e) {
       const double threshold = values[0] + values[1] * system.rest_length[e];
       mjcf.tendon.push_back({{"springyield", fmt::format("{}", threshold)}});

@@ -32,10 +32,10 @@ std::vector<KnownEffect> KnownEffects() {
          *z = (*z + h * s.rate) * std::exp(-h / 0.02);
          return 0.5 * s.stiffness * (*z - stretch(s));
        }},
-      {{"yield", Eigen::Vector2d(2e-3, 0.1)},
+      {{"yield", Eigen::Vector3d(2e-3, 0.1, 1e-3)},
        [=](const Moment& s, double, double, double* p) {
-         const double y = 2e-3 + 0.1 * s.rest_length;
-         *p = std::clamp(*p, stretch(s) - y, stretch(s) + y);
+         const double y = 2e-3 + 0.1 * s.rest_length, seen = stretch(s) - 1e-3 * s.pull;
+         *p = std::clamp(*p, seen - y, seen + y);
          return -s.stiffness * *p;
        }},
       {{"dry_friction", Eigen::VectorXd::Constant(1, 0.01)},
@@ -102,8 +102,10 @@ class PlainSimulation {
     for (int e = 0; e < system_.spring_count(); ++e) {
       const auto [a, b] = system_.springs[e];
       const Vector d = x_.col(b) - x_.col(a), n = d.normalized();
-      const SpringMoment<double> s{d.norm(), n.dot(v_.col(b) - v_.col(a)), system_.stiffness[e],
-                                   system_.rest_length[e]};
+      SpringMoment<double> s{d.norm(), n.dot(v_.col(b) - v_.col(a)), system_.stiffness[e],
+                             system_.rest_length[e]};
+      if (a >= system_.node_count()) s.pull -= n.dot(v_.col(a));
+      if (b >= system_.node_count()) s.pull += n.dot(v_.col(b));
       double tension = s.stiffness * (s.length - s.rest_length) + system_.dashpot[e] * s.rate;
       for (std::size_t i = 0; i < effects_.size(); ++i) {
         tension += effects_[i].tension(s, time, h_, &z_(static_cast<Eigen::Index>(i), e));
