@@ -136,7 +136,8 @@ TEST(HierarchyFit, UpdatesContactAndResumesThere) {
     moved = moved || !LoadVector(saved, "trial0/contact", 2).isZero(0);
     HierarchyFit second = c.Fit();
     second.Load(saved);
-    EXPECT_EQ(LoadVector(second.Save(), "trial0/contact", 2), LoadVector(saved, "trial0/contact", 2));
+    EXPECT_EQ(LoadVector(second.Save(), "trial0/contact", 2),
+              LoadVector(saved, "trial0/contact", 2));
   }
   EXPECT_TRUE(moved);
 }
