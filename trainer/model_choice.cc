@@ -32,26 +32,9 @@ constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground), and of the rigidity's (of a rod).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr std::array<double, 3> kRigidities = {0, -2, 2};
-constexpr double kRobust = 2;         // medians of the residuals, up to which their squares count
 constexpr double kSimpler = 0.9;      // a chain has a tenth of the others' parameters: a tie is its
 constexpr double kLeastError = 1e-9;  // m
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double MedianSize(const Eigen::VectorXd& r) {
-  std::vector<double> size(static_cast<std::size_t>(r.size()));
-  std::transform(r.begin(), r.end(), size.begin(), [](double value) { return std::abs(value); });
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return *middle;
-}
-
-// Residuals whose squares are Huber's measure of r: r^2, and w (2 |r| - w) beyond w.
-Eigen::VectorXd Robust(const Eigen::VectorXd& r, double w) {
-  return r.unaryExpr([w](double value) {
-    const double size = std::abs(value);
-    return size <= w ? value : std::copysign(std::sqrt(w * (2 * size - w)), value);
-  });
-}
 
 // The factors that a search begins from.
 std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
@@ -70,42 +53,6 @@ std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
 }
 
 }  // namespace
-
-LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
-                                    const TrainOptions& options, double gain, double damping) {
-  const Recording& recording = *episodes.at(0).recording;
-  TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
-  follow.threads = 1;                                          // the differences run in parallel
-  if (!model.candidate.is_chain()) follow.most_substeps /= 2;  // single springs want room
-  follow.rollout.observer_gain = gain;
-  const Parameters factors = model.Factors(recording);
-  TrackProblem problem(factors, episodes, follow);
-  LevenbergMarquardtOptions levenberg = FactorOptions(recording, model.candidate);
-  levenberg.threads = options.threads;
-  LevenbergMarquardtState state;
-  state.x = model.factors;
-  state.damping = damping;
-  // a chain that is far off for a while would outweigh all others
-  double limit = kInfinity;
-  if (model.candidate.is_chain()) {
-    if (const auto r = problem.Residuals(state.x)) limit = kRobust * MedianSize(*r);
-  }
-  const auto residuals = [&](const Eigen::VectorXd& x) {
-    auto r = problem.Residuals(x);
-    if (r && std::isfinite(limit)) r = Robust(*r, limit);
-    return r;
-  };
-  return LevenbergMarquardtStep(residuals, state, levenberg);
-}
-
-Parameters ChosenModel::Factors(const Recording& recording) const {
-  return CommonFactors(StartSystem(recording, candidate, start_substeps), recording,
-                       candidate.free_effects);
-}
-
-SpringMassSystem ChosenModel::System(const Recording& recording) const {
-  return Factors(recording).Apply(factors);
-}
 
 ModelChoice::ModelChoice(const FitData& data, const TrainOptions& options)
     : data_(data), options_(options), held_back_(HoldBack(data, kMostChoiceRecordings)) {

@@ -13,26 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "trainer/fit_model.h"
+#include "trainer/chosen_model.h"
 #include "trainer/held_back.h"
-#include "trainer/levenberg_marquardt.h"
 #include "trainer/state_arrays.h"
 
 namespace physpring {
-
-// A model with values of its common factors.
-struct ChosenModel {
-  Candidate candidate;
-  double start_substeps = 0;
-  Eigen::VectorXd start, factors;  // at first and as fitted
-
-  Parameters Factors(const Recording& recording) const;
-  SpringMassSystem System(const Recording& recording) const;
-};
-
-// One step of Levenberg-Marquardt on common factors, under an observer of this gain.
-LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
-                                    const TrainOptions& options, double gain, double damping);
 
 class ModelChoice {
  public:
