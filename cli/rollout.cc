@@ -115,6 +115,25 @@ void AddCameras(const RolloutArguments& arguments, const Task& task, SweepHooks*
   };
 }
 
+void ExpectDifferent(const std::vector<int>& levels) {
+  std::set<int> seen;
+  for (const int level : levels) {
+    if (!seen.insert(level).second) throw Error(fmt::format("--level: {} is given twice", level));
+  }
+}
+
+// Why episodes ended early, each reason once.
+void WarnOfProblems(const std::vector<EpisodeSummary>& episodes) {
+  std::map<std::string, int> problems;
+  for (const EpisodeSummary& episode : episodes) {
+    if (!episode.problem.empty()) ++problems[episode.problem];
+  }
+  for (const auto& [problem, count] : problems) {
+    fmt::print(stderr, "warning: {} of {} episodes ended early: {}\n", count, episodes.size(),
+               problem);
+  }
+}
+
 void Run(const RolloutArguments& arguments) {
   if (!arguments.controllers.empty()) {
     RolloutRecording({arguments.task, arguments.controllers, arguments.twin, arguments.video,
@@ -123,8 +142,11 @@ void Run(const RolloutArguments& arguments) {
   }
   LoadPluginLibrary();
   const std::string folder = FolderOf(arguments.task);
-  ExpectOutputs({arguments.json, arguments.save_scene, arguments.video}, {folder + "/task.json"});
   const Task task = ReadTask(folder);
+  std::vector<std::string> inputs = task.levels;
+  inputs.insert(inputs.end(), {folder + "/task.json", task.scene});
+  ExpectOutputs({arguments.json, arguments.save_scene, arguments.video}, inputs);
+  ExpectDifferent(arguments.sweep.levels);
   if (!arguments.save_scene.empty()) {
     WriteFileAtomically(arguments.save_scene,
                         FormatSceneFile(task, arguments.sweep.levels.front()));
@@ -146,6 +168,7 @@ void Run(const RolloutArguments& arguments) {
   const Sweep sweep = RunSweep(task, options, hooks);
   std::set<std::string> warnings(sweep.warnings.begin(), sweep.warnings.end());
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  WarnOfProblems(sweep.episodes);
   if (!sweep.complete) {
     fmt::print(stderr, "physpring: stopped; {} finished episodes are {}\n", sweep.episodes.size(),
                options.folder.empty() ? "lost, because there is no --output"

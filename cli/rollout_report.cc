@@ -116,6 +116,7 @@ std::string FormatLevels(const PolicyResult& result) {
 // `first`, `second`: names of the two that were compared.
 std::string FormatVerdicts(const std::string& first, const std::string& second,
                            const PairedVerdicts& v) {
+  if (v.count() == 0) return fmt::format("{} and {}: no episode in common\n", first, second);
   const std::optional<double> kappa = v.Kappa();
   return fmt::format(
       "{} and {}: {} episodes, both succeed {}, only {} {}, only {} {}, neither {}; agreement "
@@ -182,9 +183,9 @@ void AddVerdicts(const char* first, const char* second, const PairedVerdicts& v,
                 {std::string("only_") + first, v.only_first},
                 {std::string("only_") + second, v.only_second},
                 {"neither", v.neither},
-                {"agreement", v.Agreement()},
+                {"agreement", v.count() > 0 ? Json(v.Agreement()) : Json()},
                 {"kappa", OrNull(v.Kappa())},
-                {"mcnemar_p", v.McNemar()}});
+                {"mcnemar_p", v.count() > 0 ? Json(v.McNemar()) : Json()}});
 }
 
 Json ToJson(const Comparison& comparison) {

@@ -45,6 +45,7 @@ struct Run {
   Simulation& simulation;
   Policy& policy;
   Viewer* viewer;
+  const std::function<bool()>& stop;
   EpisodeResult result;
   Observation observation;
 
@@ -100,7 +101,11 @@ struct Run {
       simulation.Reset(start);
     }
     Observe(0);
-    for (int frame = 0; frame < model.task->frames; ++frame) Frame(frame);
+    for (int frame = 0; frame < model.task->frames; ++frame) {
+      result.stopped = stop && stop();
+      if (result.stopped) return;
+      Frame(frame);
+    }
     result.episode.success = result.episode.met_frames >= model.task->success.at_least;
   }
 };
@@ -108,8 +113,8 @@ struct Run {
 }  // namespace
 
 EpisodeResult RunEpisode(const TaskModel& model, const EpisodeStart& start, Simulation* simulation,
-                         Policy* policy, Viewer* viewer) {
-  Run run{model, *simulation, *policy, viewer, {}, {}};
+                         Policy* policy, Viewer* viewer, const std::function<bool()>& stop) {
+  Run run{model, *simulation, *policy, viewer, stop, {}, {}};
   run.result.episode.start = start;
   run.result.episode.level = model.level;
   const double drawn = viewer ? viewer->seconds() : 0;
@@ -122,7 +127,7 @@ EpisodeResult RunEpisode(const TaskModel& model, const EpisodeStart& start, Simu
     } catch (const Error& error) {
       run.result.episode.problem = error.what();
     }
-    if (viewer) viewer->Finish();
+    if (viewer && !run.result.stopped) viewer->Finish();
   }
   if (viewer) run.result.seconds.rendering = viewer->seconds() - drawn;
   return std::move(run.result);

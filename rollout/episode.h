@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_ROLLOUT_EPISODE_H_
 #define PHYSPRING_ROLLOUT_EPISODE_H_
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -54,13 +55,15 @@ struct EpisodeSeconds {
 struct EpisodeResult {
   TaskEpisode episode;
   EpisodeSeconds seconds;
+  bool stopped = false;  // before its end; the rest is worth nothing then
 };
 
 // `viewer` may be null where the policy needs no images. A policy that fails (PolicyError), gives
 // wrong or not finite numbers, and a simulation that becomes unstable, end the episode with a
-// `problem` and without success.
+// `problem` and without success. `stop`, if there is one, is asked before each frame.
 EpisodeResult RunEpisode(const TaskModel& model, const EpisodeStart& start, Simulation* simulation,
-                         Policy* policy, Viewer* viewer);
+                         Policy* policy, Viewer* viewer,
+                         const std::function<bool()>& stop = nullptr);
 
 }  // namespace physpring
 

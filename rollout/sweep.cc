@@ -45,9 +45,7 @@ class Queue {
     try {
       for (std::size_t i = next_++; i < jobs_.size() && !stopped_; i = next_++) {
         if (hooks_.stop && hooks_.stop()) {
-          stopped_ = true;
-          const std::lock_guard lock(mutex_);
-          sweep_.complete = false;
+          Stop();
           return;
         }
         const Job& job = jobs_[i];
@@ -64,6 +62,12 @@ class Queue {
     }
   }
 
+  void Stop() {
+    stopped_ = true;
+    const std::lock_guard lock(mutex_);
+    sweep_.complete = false;
+  }
+
   void RunJob(const Job& job, Simulation* simulation) {
     const EpisodeStart start = StartOf(task_, options_.seed, job.episode, options_.disturbance);
     const std::unique_ptr<Policy> policy =
@@ -73,7 +77,11 @@ class Queue {
       viewer = hooks_.make_viewer(*job.model, job.episode, policy->NeedsImages());
     }
     const EpisodeResult result =
-        RunEpisode(*job.model, start, simulation, policy.get(), viewer.get());
+        RunEpisode(*job.model, start, simulation, policy.get(), viewer.get(), hooks_.stop);
+    if (result.stopped) {
+      Stop();
+      return;
+    }
     if (!options_.folder.empty()) WriteEpisode(options_.folder, result, options_.states);
     const std::lock_guard lock(mutex_);
     sweep_.episodes.push_back(Summarise(result));

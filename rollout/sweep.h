@@ -33,7 +33,7 @@ struct SweepHooks {
   // Cameras for one episode, made in its thread, or null. `images`: the policy needs them.
   std::function<std::unique_ptr<Viewer>(const TaskModel& model, int episode, bool images)>
       make_viewer = nullptr;
-  std::function<bool()> stop = nullptr;  // asked before each episode
+  std::function<bool()> stop = nullptr;  // asked before each frame
   // An episode is finished; one call at a time.
   std::function<void(const EpisodeSummary&, int done, int all)> report = nullptr;
 };

@@ -105,7 +105,7 @@ SuccessOptions ReadSuccess(const JsonFields& fields, int frames) {
   success.body = TextOr(fields, "body", "");
   success.from_frame = CountOr(fields, "from_frame", 0, 0);
   success.at_least = CountOr(fields, "at_least", 1, 1);
-  if (success.from_frame + success.at_least > frames) {
+  if (success.from_frame > frames - success.at_least) {
     fields.Fail("from_frame", fmt::format("and at_least do not fit into {} frames", frames));
   }
   nlohmann::ordered_json numbers = nlohmann::ordered_json::parse(fields.Dump());

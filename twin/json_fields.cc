@@ -27,6 +27,8 @@ JsonFields::JsonFields(const std::string& text, std::string where) : where_(std:
     object_ = Json::parse(text, check_depth);
   } catch (const Json::parse_error& error) {
     throw Error(fmt::format("{}: is not JSON, byte {} is unexpected", where_, error.byte));
+  } catch (const Json::out_of_range&) {
+    throw Error(fmt::format("{}: has a number that is too large", where_));
   }
   if (!object_.is_object()) throw Error(fmt::format("{}: is not a JSON object", where_));
 }

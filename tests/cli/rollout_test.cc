@@ -169,8 +169,34 @@ TEST_F(RolloutTest, SaysWhatIsWrong) {
   EXPECT_TRUE(FailsWith(Run({"--policy", "replay:nothing.npz"}), "nothing.npz: cannot be read"));
   EXPECT_TRUE(FailsWith(RunProgram({"rollout", folder_.path()}), "task.json: cannot be read"));
   EXPECT_TRUE(FailsWith(RunProgram({"merge", folder_.path()}), "sweep.json: cannot be read"));
+  EXPECT_TRUE(FailsWith(Run({"--policy", "random", "--level", "1,0,1"}), "1 is given twice"));
+  EXPECT_TRUE(FailsWith(Run({"--policy", "random", "--save-scene", task_.path() + "/scene.xml"}),
+                        "scene.xml"));
   EXPECT_EQ(Run({"--shard", "4/3"}).status, 2);
   EXPECT_EQ(Run({"--policy", "luck"}).status, 2);
+}
+
+TEST_F(RolloutTest, LeavesTheTasksFilesAlone) {
+  const std::string before = ReadFile(task_.path() + "/scene.xml");
+  Run({"--policy", "random", "--save-scene", task_.path() + "/scene.xml"});
+  EXPECT_EQ(ReadFile(task_.path() + "/scene.xml"), before);
+}
+
+TEST_F(RolloutTest, SaysWhyEpisodesEndedEarly) {
+  const ProgramResult result = Run({"--policy", "ws://127.0.0.1:1", "--episodes", "2"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.errors, HasSubstr("warning: 2 of 2 episodes ended early: "));
+  EXPECT_THAT(result.errors, HasSubstr("Connection refused"));
+}
+
+TEST_F(RolloutTest, ComparesNothingWhereNoEpisodeIsInCommon) {
+  const std::string push = "replay:" + task_.WriteActions(0.1, 15);
+  ASSERT_EQ(Run({"--policy", push, "-o", File("a")}).status, 0);
+  ASSERT_EQ(Run({"--policy", "random", "--first", "1", "-o", File("b")}).status, 0);
+  const ProgramResult merged =
+      RunProgram({"merge", File("a"), File("b"), "--json", File("merged.json")});
+  EXPECT_THAT(merged.output, HasSubstr("no episode in common"));
+  EXPECT_THAT(ReadFile(File("merged.json")), HasSubstr("\"agreement\": null"));
 }
 
 TEST_F(RolloutTest, SaysThatFfmpegIsMissing) {
