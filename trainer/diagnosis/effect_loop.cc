@@ -35,6 +35,7 @@ std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMa
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {
     if (effect->name() == "ground_contact" && !recording.ground) continue;
+    if (effect->name() == "twist" && body.order.size() == 0) continue;
     if (solid && effect->bends()) continue;
     const bool has_it =
         std::any_of(body.effects.begin(), body.effects.end(),

@@ -21,6 +21,7 @@
   EFFECT(BendingDamping)          \
   EFFECT(RestBend)                \
   EFFECT(BendingFriction)         \
+  EFFECT(Twist)                   \
   EFFECT(MassDistribution)        \
   EFFECT(Tether)                  \
   EFFECT(RestLength)              \
