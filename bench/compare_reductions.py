@@ -77,8 +77,9 @@ def train_and_judge(arguments, name, recording, judged, options):
         seconds = time.monotonic() - start
         errors = arguments.output / f"{name}.errors.json"
         run([arguments.physpring, "eval", twin, judged, "--json", errors])
-        judged_as = json.loads(errors.read_text())
-        judged_as["train_seconds"] = seconds
+        report = json.loads(errors.read_text())
+        judged_as = {"levels": report["levels"], "motionless": report["motionless"],
+                     "train_seconds": seconds}
         temporary = result.with_suffix(".part")
         temporary.write_text(json.dumps(judged_as))
         temporary.rename(result)
