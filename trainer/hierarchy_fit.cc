@@ -144,10 +144,9 @@ void HierarchyFit::BeginTrials(const std::vector<std::vector<int>>& candidates) 
 // Fits the common factors of the first candidates that have not got theirs, each with its share of
 // the threads; when all have, leaves the best.
 void HierarchyFit::StepTrials() {
-  std::vector<std::size_t> running;
+  std::vector<int> running;
   for (std::size_t i = 0; i < trials_.size(); ++i) {
-    const bool room = static_cast<int>(running.size()) < options_.threads;
-    if (room && !trials_[i]->level.can_be_judged()) running.push_back(i);
+    if (!trials_[i]->level.can_be_judged()) running.push_back(static_cast<int>(i));
   }
   if (running.empty()) {
     const auto best =
@@ -158,9 +157,8 @@ void HierarchyFit::StepTrials() {
     trials_.resize(1);
     return;
   }
-  const int count = static_cast<int>(running.size());
-  ParallelFor(count, count,
-              [&](int i) { trials_[running[i]]->level.Step(options_.threads / count); });
+  ParallelFirst(running, options_.threads,
+                [this](int i, int threads) { trials_[i]->level.Step(threads); });
   status_ = fmt::format("candidate {} of {}, {}", running[0] + 1, trials_.size(),
                         trials_[running[0]]->level.Status());
 }

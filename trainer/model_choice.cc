@@ -109,16 +109,14 @@ double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& 
 // each with its share of the threads.
 bool ModelChoice::Step() {
   if (round_ == kRoundCount) return false;
-  std::vector<Contender*> running;
-  for (int i : in_round_) {
-    const bool room = static_cast<int>(running.size()) < options_.threads;
-    if (room && !contenders_[i].finished) running.push_back(&contenders_[i]);
-  }
-  const int count = static_cast<int>(running.size());
-  TrainOptions options = options_;
-  options.threads = options_.threads / count;
-  ParallelFor(count, count, [&](int i) { StepContender(options, running[i]); });
-  status_ = running[0]->status;
+  std::vector<int> running = in_round_;
+  std::erase_if(running, [this](int i) { return contenders_[i].finished; });
+  ParallelFirst(running, options_.threads, [this](int i, int threads) {
+    TrainOptions options = options_;
+    options.threads = threads;
+    StepContender(options, &contenders_[i]);
+  });
+  status_ = contenders_[running[0]].status;
   if (std::all_of(in_round_.begin(), in_round_.end(),
                   [this](int i) { return contenders_[i].finished; })) {
     BeginNextRound();

@@ -30,4 +30,10 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   }
 }
 
+void ParallelFirst(const std::vector<int>& items, int threads,
+                   const std::function<void(int, int)>& work) {
+  const int count = std::min(threads, static_cast<int>(items.size()));
+  ParallelFor(count, count, [&](int i) { work(items[i], threads / count); });
+}
+
 }  // namespace physpring

@@ -3,6 +3,7 @@
 #define PHYSPRING_TRAINER_PARALLEL_H_
 
 #include <functional>
+#include <vector>
 
 namespace physpring {
 
@@ -10,6 +11,11 @@ namespace physpring {
 // thrown by a call (lowest index) is thrown again when all have ended. Results that go to places of
 // their own do not depend on the number of threads.
 void ParallelFor(int count, int threads, const std::function<void(int)>& work);
+
+// Calls work(item, share) at the same time for the first of `items`, as many as there are threads,
+// each with its share of the threads. Needs an item.
+void ParallelFirst(const std::vector<int>& items, int threads,
+                   const std::function<void(int, int)>& work);
 
 }  // namespace physpring
 

@@ -9,8 +9,6 @@
 // and the turn at the start give the torque T = GJ (turn + angle) / L, and edges feel the forces
 // -T b / (2 |p|) and -T b / (2 |q|): torques on a straight rod are none, a bent one leaves its
 // plane.
-#include <utility>
-
 #include "twin/effects/bend_effect.h"
 
 namespace physpring {
@@ -76,65 +74,47 @@ class TwistForce : public EffectForce {
 
   void Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd> internal,
            Points* force) const override {
-    internal[0] = AngleAfter(instant, internal[0]);
-    const double torque = Torque(internal[0]);
-    for (const BendingTriple& triple : triples_) {
-      const Twist twist(instant.x, triple);
-      if (twist.folded) continue;
-      AddToNodes(triple, -torque * twist.p_slope, -torque * twist.q_slope, force);
-    }
+    const Points slope = Slope(instant.x);
+    internal[0] += instant.step * slope.cwiseProduct(instant.v).sum();
+    *force -= Torque(internal[0]) * slope;
   }
 
   void AddAdjoint(const Instant& instant, const Eigen::Ref<const Eigen::VectorXd>& internal,
                   const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
                   InstantGradient* gradient) const override {
-    const double angle = AngleAfter(instant, internal[0]), torque = Torque(angle);
-    const auto edge_bars = [&](const BendingTriple& t) {
-      return std::pair<Vector, Vector>(force_bar.col(t.b) - force_bar.col(t.a),
-                                       force_bar.col(t.c) - force_bar.col(t.b));
-    };
-    double torque_bar = 0;
-    for (const BendingTriple& triple : triples_) {
-      const Twist twist(instant.x, triple);
-      if (twist.folded) continue;
-      const auto [p_force_bar, q_force_bar] = edge_bars(triple);
-      // forward: force = -torque slope
-      torque_bar -= p_force_bar.dot(twist.p_slope) + q_force_bar.dot(twist.q_slope);
-    }
+    const Points slope = Slope(instant.x);
+    const double angle = internal[0] + instant.step * slope.cwiseProduct(instant.v).sum();
+    // forward: force = -torque slope
+    const double torque_bar = -force_bar.cwiseProduct(slope).sum();
     // forward: torque = GJ (turn + angle) / L
     gradient->values[0] += torque_bar * (values_[1] + angle) / length_;
     gradient->values[1] += torque_bar * values_[0] / length_;
     internal_bar[0] += torque_bar * values_[0] / length_;
+    // forward: angle += h slope . v
+    const double rate_bar = instant.step * internal_bar[0];
+    gradient->v += rate_bar * slope;
+    const Points slope_bar = rate_bar * instant.v - Torque(angle) * force_bar;
     for (const BendingTriple& triple : triples_) {
       const Twist twist(instant.x, triple);
       if (twist.folded) continue;
-      const auto [p_force_bar, q_force_bar] = edge_bars(triple);
-      const auto [p_rate, q_rate] = Rates(instant, triple);
-      // forward: angle += h (p_slope . p_dot + q_slope . q_dot)
-      const double rate_bar = instant.step * internal_bar[0];
-      AddToNodes(triple, rate_bar * twist.p_slope, rate_bar * twist.q_slope, &gradient->v);
       Vector p_bar, q_bar;
-      twist.Adjoint(rate_bar * p_rate - torque * p_force_bar,
-                    rate_bar * q_rate - torque * q_force_bar, &p_bar, &q_bar);
+      twist.Adjoint(slope_bar.col(triple.b) - slope_bar.col(triple.a),
+                    slope_bar.col(triple.c) - slope_bar.col(triple.b), &p_bar, &q_bar);
       AddToNodes(triple, p_bar, q_bar, &gradient->x);
     }
   }
 
  private:
-  static std::pair<Vector, Vector> Rates(const Instant& instant, const BendingTriple& t) {
-    return {instant.v.col(t.b) - instant.v.col(t.a), instant.v.col(t.c) - instant.v.col(t.b)};
-  }
-
   double Torque(double angle) const { return values_[0] * (values_[1] + angle) / length_; }
 
-  double AngleAfter(const Instant& instant, double angle) const {
+  // d angle / d x, 1/m, of all nodes and controllers.
+  Points Slope(const Points& x) const {
+    Points slope = Points::Zero(3, x.cols());
     for (const BendingTriple& triple : triples_) {
-      const Twist twist(instant.x, triple);
-      if (twist.folded) continue;
-      const auto [p_rate, q_rate] = Rates(instant, triple);
-      angle += instant.step * (twist.p_slope.dot(p_rate) + twist.q_slope.dot(q_rate));
+      const Twist twist(x, triple);
+      if (!twist.folded) AddToNodes(triple, twist.p_slope, twist.q_slope, &slope);
     }
-    return angle;
+    return slope;
   }
 
   const Eigen::VectorXd values_;
