@@ -89,8 +89,9 @@ void Checkpoint::ExpectReplaceable(bool force) const {
   Twin twin;
   try {
     twin = ReadTwin(path_);
-  } catch (const Error&) {
-    throw Error(fmt::format("{}: is there and no twin; choose another name", path_));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: is there and no twin ({}); choose another name", path_,
+                            error.what()));
   }
   if (force) return;
   throw Error(fmt::format("{}: {}", path_,

@@ -8,15 +8,15 @@
 
 namespace physpring {
 
-EffectEntries::EffectEntries(std::vector<EffectValues> start, double unit)
+EffectEntries::EffectEntries(std::vector<EffectValues> start, double moment_unit)
     : start_(std::move(start)) {
   for (const EffectValues& effect : start_) {
     const double* value = effect.values.data();
     for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
       const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
+      const double scale = parameter.scale * (parameter.key.ends_with("_n_m") ? moment_unit : 1);
       for (int n = 0; n < parameter.count; ++n) {
-        entries_.push_back(
-            {*value++, parameter.low, parameter.high, unit * parameter.scale, logarithmic});
+        entries_.push_back({*value++, parameter.low, parameter.high, scale, logarithmic});
       }
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The values of effects as unconstrained numbers x that a fit moves, one after the other:
-//   even:         value = start + unit scale x
+//   even:         value = start + scale x
 //   logarithmic:  value = start exp(x)
 // within the parameter's bounds. Zero is the start.
 #ifndef PHYSPRING_TRAINER_EFFECT_ENTRIES_H_
@@ -14,8 +14,8 @@ namespace physpring {
 
 class EffectEntries {
  public:
-  // `unit`: by how much more than the parameters' scales even ones move.
-  explicit EffectEntries(std::vector<EffectValues> start, double unit = 1);
+  // `moment_unit`: moments (keys that end in _n_m) that are even move by so many of their scales.
+  explicit EffectEntries(std::vector<EffectValues> start, double moment_unit = 1);
 
   int size() const { return static_cast<int>(entries_.size()); }
   std::vector<EffectValues> Apply(const Eigen::VectorXd& x) const;

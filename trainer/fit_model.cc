@@ -85,11 +85,11 @@ Candidate BendingChain(const Recording& recording, Candidate candidate) {
   const double damping = kCalm * node_mass * std::pow(spacing, 3) / 16;
   candidate.effects.push_back({"bending_damping", Eigen::VectorXd::Constant(1, damping)});
   candidate.effects.push_back({"bending", Eigen::VectorXd::Constant(1, rigidity)});
-  candidate.effects.push_back(
-      {"bending_friction", Eigen::Vector2d(friction, kSlip / length * spacing)});
+  candidate.effects.push_back({"bending_friction", Eigen::Vector2d(friction, kSlip / length)});
   candidate.effects.push_back(
       {"rest_bend", Eigen::VectorXd::Zero(GetEffect("rest_bend").value_count())});
-  candidate.free_effects = 3;
+  candidate.effects.push_back({"twist", Eigen::Vector2d(rigidity, 0)});
+  candidate.free_effects = 4;
   return candidate;
 }
 
@@ -102,7 +102,7 @@ void SetFreeEffects(const SpringMassSystem& base, int free_effects, ParameterOpt
   options->length_classes = options->dashpots = false;
   const EffectValues& bending = *(base.effects.end() - free_effects);
   const double moment = bending.values[0] * kSlip / RodLength(base.order);
-  options->effect_unit = moment / GetEffect("rest_bend").parameters()[0].scale;
+  options->moment_unit = moment / GetEffect("rest_bend").parameters()[0].scale;
 }
 
 }  // namespace

@@ -52,6 +52,10 @@ void FullFit::StepChoose() {
     return;
   }
   model_ = choice_.Best();
+  if (choice_.BestSprings().size() > 0 && GaussNewtonSteps() > 0) {
+    BeginGaussNewton(kLastGain, choice_.BestSprings());
+    return;
+  }
   state_.stage = Stage::kCommon;
   state_.iteration = 0;
   state_.gain = 0;
@@ -85,12 +89,16 @@ void FullFit::StepCommon() {
     state_.stage = Stage::kDone;
     return;
   }
+  BeginGaussNewton(kFirstSpringGain, Eigen::VectorXd::Zero(SpringParameters().size()));
+  if (GaussNewtonSteps() == 0) BeginAdam(true);
+}
+
+void FullFit::BeginGaussNewton(int gain, const Eigen::VectorXd& x) {
   state_.stage = Stage::kGaussNewton;
-  state_.gain = kFirstSpringGain;
-  state_.x = Eigen::VectorXd::Zero(SpringParameters().size());
+  state_.gain = gain;
+  state_.x = x;
   state_.iteration = state_.slow = 0;
   state_.damping = 1e-3;
-  if (GaussNewtonSteps() == 0) BeginAdam(true);
 }
 
 int FullFit::GaussNewtonSteps() const {

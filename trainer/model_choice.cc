@@ -254,11 +254,14 @@ double ModelChoice::Progress() const {
   return kStart[round_] + (kStart[round_ + 1] - kStart[round_]) * part;
 }
 
-ChosenModel ModelChoice::Best() const {
-  const auto best = std::min_element(in_round_.begin(), in_round_.end(), [&](int i, int j) {
+int ModelChoice::BestContender() const {
+  return *std::min_element(in_round_.begin(), in_round_.end(), [&](int i, int j) {
     return contenders_[i].score < contenders_[j].score;
   });
-  ChosenModel model = contenders_[*best].model;
+}
+
+ChosenModel ModelChoice::Best() const {
+  ChosenModel model = contenders_[BestContender()].model;
   if (model.start_substeps == 0) SearchStart(&model);
   return model;
 }

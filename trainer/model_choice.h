@@ -32,6 +32,9 @@ class ModelChoice {
 
   // The best model so far (the first candidate's softest start before there is any).
   ChosenModel Best() const;
+  // The springs' own values (fit_model.h, SpringFactors) of that model, as the last round fitted
+  // them; empty where there was none.
+  const Eigen::VectorXd& BestSprings() const { return contenders_[BestContender()].springs; }
 
   void Save(StateArrays* arrays) const;
   void Load(const StateArrays& arrays);
@@ -49,6 +52,7 @@ class ModelChoice {
   };
 
   const Recording& first() const { return data_.recordings[0]; }
+  int BestContender() const;
   bool IsChainInRound() const;
   int LastGain(const Candidate& candidate) const;
   double PartOfRound(const Contender& contender) const;

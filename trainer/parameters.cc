@@ -43,7 +43,7 @@ std::vector<EffectValues> LastEffects(const SpringMassSystem& system, int count)
 Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& options)
     : base_(base),
       options_(options),
-      effects_(LastEffects(base, options.free_effects), options.effect_unit),
+      effects_(LastEffects(base, options.free_effects), options.moment_unit),
       springs_(base.spring_count()),
       length_class_(options.length_classes ? LengthClasses(base.rest_length)
                                            : std::vector<int>(springs_, 0)),

@@ -26,7 +26,7 @@ struct ParameterOptions {
   bool spring_rest_length = false;
   bool contact = false;        // restitution and friction of the ground
   int free_effects = 0;        // so many of the base's effects, the last ones; the others stay
-  double effect_unit = 1;      // of those that move evenly (effect_entries.h)
+  double moment_unit = 1;      // of those that are moments (effect_entries.h)
   bool length_classes = true;  // else all springs are of one class
   bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
 };

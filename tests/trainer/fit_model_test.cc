@@ -18,11 +18,11 @@ Recording Rod() {
 TEST(Candidates, OfARodEndWithAChainThatBends) {
   const Candidate chain = Candidates(Rod(), {}).back();
   EXPECT_EQ(chain.neighbours, 2);
-  EXPECT_EQ(chain.free_effects, 3);
+  EXPECT_EQ(chain.free_effects, 4);
   const SpringMassSystem system = StartSystem(Rod(), chain, 8);
-  EXPECT_EQ(system.effects.size(), 4U);
+  EXPECT_EQ(system.effects.size(), 5U);
   EXPECT_NO_THROW(system.Validate("chain"));
-  EXPECT_EQ(CommonFactors(system, Rod(), 3).effect_count(), 1 + 2 + 16);
+  EXPECT_EQ(CommonFactors(system, Rod(), 4).effect_count(), 1 + 2 + 16 + 2);
 }
 
 // Nodes that go to and fro across the rod, every other one the other way: its shortest wave.

@@ -87,7 +87,7 @@ TEST_P(ParametersAdjoint, AgreesWithDifferences) {
 TEST(Parameters, LastEffectsHaveTheDerivativesThatDifferencesShow) {
   SpringMassSystem base = RandomSystem(10, 2, 3);
   base.effects = {{"stiffening", Eigen::VectorXd::Constant(1, 3)},
-                  {"bending_friction", Eigen::Vector2d(1e-3, 0.9)},
+                  {"bending_friction", Eigen::Vector2d(1e-3, 900)},
                   {"gravity_direction", Eigen::Vector2d(0.1, 0)}};
   ParameterOptions options = kCommon;
   options.free_effects = 2;
@@ -100,7 +100,7 @@ TEST(Parameters, LastEffectsHaveTheDerivativesThatDifferencesShow) {
                      Eigen::Vector2d(-3, 4)};
   const SpringMassSystem system = parameters.Apply(values);
   EXPECT_EQ(system.effects[0].values[0], 3);
-  EXPECT_EQ(system.effects[1].values[1], 1);
+  EXPECT_EQ(system.effects[1].values[1], 1000);
   const Eigen::VectorXd bar = parameters.Adjoint(values, system, weights);
   const auto loss = [&] {
     long double sum = 0;

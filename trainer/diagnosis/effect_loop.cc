@@ -31,12 +31,10 @@ constexpr double kRival = 1.25;
 constexpr double kCommonPart = 0.2, kSearchPart = 0.5, kTrainingPart = 0.65;
 
 std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMassSystem& body) {
-  const bool solid = IsSolid(body);
+  const BodyTraits traits = {recording.ground.has_value(), IsSolid(body), body.order.size() > 0};
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {
-    if (effect->name() == "ground_contact" && !recording.ground) continue;
-    if (effect->name() == "twist" && body.order.size() == 0) continue;
-    if (solid && effect->bends()) continue;
+    if (!effect->MayBeMissing(traits)) continue;
     const bool has_it =
         std::any_of(body.effects.begin(), body.effects.end(),
                     [&](const EffectValues& own) { return own.name == effect->name(); });

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction of bending, independent of the rate (strands of a cable that slide): at each triple a
-// moment m that gives way at the angle delta (Prandtl's element in two dimensions):
-//   z <- z + h kappa_dot, shortened to |z| <= delta,   M = m z / delta
-#include <algorithm>
-
+// Friction of bending, independent of the rate (strands of a cable that slide): at each triple of
+// length l a moment m that gives way at the curvature c (Prandtl's element in two dimensions):
+//   z <- z + h kappa_dot, shortened to |z| <= delta = c l,   M = m z / delta
 #include "twin/effects/bend_effect.h"
 
 namespace physpring {
@@ -16,17 +14,18 @@ class BendingFrictionForce : public BendEffectForce {
  protected:
   bool has_internal() const override { return true; }
 
-  Vector Moment(int, const Bend& bend, double step, Vector* z) const override {
-    const double slip = values_[1];
+  Vector Moment(int triple, const Bend& bend, double step, Vector* z) const override {
+    const double slip = Slip(triple);
     if (slip == 0) return Vector::Zero();
     *z += step * bend.rate;
     if (z->norm() > slip) *z *= slip / z->norm();
     return values_[0] / slip * *z;
   }
 
-  void MomentAdjoint(int, const Bend& bend, double step, const Vector& z, const Vector& moment_bar,
-                     Vector* z_bar, Bend* bar, Eigen::VectorXd* values_bar) const override {
-    const double slip = values_[1];
+  void MomentAdjoint(int triple, const Bend& bend, double step, const Vector& z,
+                     const Vector& moment_bar, Vector* z_bar, Bend* bar,
+                     Eigen::VectorXd* values_bar) const override {
+    const double slip = Slip(triple);
     if (slip == 0) return;
     const Vector free = z + step * bend.rate;
     const double length = free.norm();
@@ -35,15 +34,22 @@ class BendingFrictionForce : public BendEffectForce {
     // forward: M = m z / delta
     const double along = moment_bar.dot(after) / slip;
     (*values_bar)[0] += along;
-    (*values_bar)[1] -= values_[0] * along / slip;
+    double slip_bar = -values_[0] * along / slip;
     *z_bar += values_[0] / slip * moment_bar;
     if (slips) {
       // forward: z' = delta z / |z|
       const Vector direction = free / length;
-      (*values_bar)[1] += direction.dot(*z_bar);
+      slip_bar += direction.dot(*z_bar);
       *z_bar = slip / length * (*z_bar - direction.dot(*z_bar) * direction);
     }
+    (*values_bar)[1] += slip_bar * triples()[static_cast<std::size_t>(triple)].length;
     bar->rate += step * *z_bar;
+  }
+
+ private:
+  // delta, rad.
+  double Slip(int triple) const {
+    return values_[1] * triples()[static_cast<std::size_t>(triple)].length;
   }
 };
 
@@ -53,10 +59,10 @@ class BendingFriction : public Effect {
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"moment_n_m", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic},
-            {"slip_angle_rad", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};
+            {"slip_curvature_per_m", 0, 1000, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::Vector2d(1e-4, 0.03), Eigen::Vector2d(1e-3, 0.1)};
+    return {Eigen::Vector2d(1e-4, 1), Eigen::Vector2d(1e-3, 4)};
   }
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
@@ -64,20 +70,10 @@ class BendingFriction : public Effect {
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     if (values.isZero() || values[1] == 0) return;
-    StiffenLikeBending(values[0] / values[1] * LongestTriple(*bound), 0, bound);
+    StiffenLikeBending(values[0] / values[1], 0, bound);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
     return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not bend"};
-  }
-
- private:
-  // B / length is the stiffness of the moment at each triple, or more.
-  static double LongestTriple(const SpringMassSystem& system) {
-    double longest = 0;
-    for (const BendingTriple& triple : FindBendingTriples(system)) {
-      longest = std::max(longest, triple.length);
-    }
-    return longest;
   }
 };
 

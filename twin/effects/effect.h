@@ -39,6 +39,13 @@ struct Setting {
   Eigen::Vector3d gravity;  // m/s^2
 };
 
+// What decides whether a body may lack an effect.
+struct BodyTraits {
+  bool on_ground;  // there is a ground
+  bool solid;      // its springs spread in all three directions
+  bool rod;        // its arc lengths are known
+};
+
 // The sub-step in which forces act.
 struct Instant {
   double time;      // s since the start of the recording
@@ -93,6 +100,9 @@ class Effect {
 
   // Whether it is about bending, which in a solid its springs account for.
   virtual bool bends() const { return false; }
+
+  // Whether a body like this may lack it.
+  virtual bool MayBeMissing(const BodyTraits& body) const { return !(body.solid && bends()); }
 
   // How much later than recorded the controllers move, s. If `delays`, it is the first value.
   virtual bool delays() const { return false; }

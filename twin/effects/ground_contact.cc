@@ -11,6 +11,7 @@ namespace {
 class GroundContact : public Effect {
  public:
   std::string name() const override { return "ground_contact"; }
+  bool MayBeMissing(const BodyTraits& body) const override { return body.on_ground; }
   std::vector<EffectParameter> parameters() const override {
     return {{"friction_change", -2, 2, 0.2}, {"restitution_change", -1, 1, 0.2}};
   }

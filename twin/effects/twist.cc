@@ -126,6 +126,9 @@ class TwistEffect : public Effect {
  public:
   std::string name() const override { return "twist"; }
   bool bends() const override { return true; }
+  bool MayBeMissing(const BodyTraits& body) const override {
+    return body.rod && Effect::MayBeMissing(body);
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"torsional_rigidity_n_m2", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"turn_rad", -100, 100, 1}};

@@ -38,7 +38,7 @@ const std::map<std::string, Case>& Cases() {
       {"rest_bend",
        {{1e-2, -2e-2, 1e-2, 0, 2e-2, 1e-2, -1e-2, 1e-2, -1e-2, 1e-2, 0, 2e-2, 1e-2, -1e-2, 0, 1e-2},
         kSmooth}},
-      {"bending_friction", {{5e-3, 0.1}, kKinked}},
+      {"bending_friction", {{5e-3, 1}, kKinked}},
       {"twist", {{1e-2, 1}, kSmooth}},
       {"mass_distribution", {{0.1, 0.05, 0.02, -0.03, 0.3, -0.2, 0.1, 0.5}, kSmooth}},
       {"tether", {{5, 0.1, 0.05, 0.02, -0.03, 0.1, 0.2, -0.1}, kSmooth}},
