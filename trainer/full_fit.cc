@@ -53,7 +53,7 @@ void FullFit::StepChoose() {
   }
   model_ = choice_.Best();
   if (choice_.BestSprings().size() > 0 && GaussNewtonSteps() > 0) {
-    BeginGaussNewton(kLastGain, choice_.BestSprings());
+    BeginGaussNewton(choice_.BestSprings());
     return;
   }
   state_.stage = Stage::kCommon;
@@ -89,13 +89,13 @@ void FullFit::StepCommon() {
     state_.stage = Stage::kDone;
     return;
   }
-  BeginGaussNewton(kFirstSpringGain, Eigen::VectorXd::Zero(SpringParameters().size()));
+  BeginGaussNewton(Eigen::VectorXd::Zero(SpringParameters().size()));
   if (GaussNewtonSteps() == 0) BeginAdam(true);
 }
 
-void FullFit::BeginGaussNewton(int gain, const Eigen::VectorXd& x) {
+void FullFit::BeginGaussNewton(const Eigen::VectorXd& x) {
   state_.stage = Stage::kGaussNewton;
-  state_.gain = gain;
+  state_.gain = kFirstSpringGain;
   state_.x = x;
   state_.iteration = state_.slow = 0;
   state_.damping = 1e-3;

@@ -59,7 +59,7 @@ class FullFit : public Fitter {
   void StepCommon();
   void StepGaussNewton();
   void StepAdam();
-  void BeginGaussNewton(int gain, const Eigen::VectorXd& x);
+  void BeginGaussNewton(const Eigen::VectorXd& x);
   int GaussNewtonSteps() const;
   int AdamSteps() const;
   void BeginAdam(bool wanted);

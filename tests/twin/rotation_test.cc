@@ -24,6 +24,16 @@ TEST(FitRotation, DoesNotTwistALine) {
   EXPECT_LT((rotation - expected).norm(), 1e-4);
 }
 
+TEST(FitRotation, IsARotationOfThinClouds) {
+  for (double thickness : {1e-1, 1e-3, 1e-6, 0.0}) {
+    Points from = Points::Random(3, 12);
+    from.row(2) *= thickness;
+    const Eigen::Matrix3d rotation = FitRotation(from, from + 0.1 * Points::Random(3, 12));
+    EXPECT_LT((rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_GT(rotation.determinant(), 0);
+  }
+}
+
 TEST(FitRotation, IsARotationEvenForAMirroredCloud) {
   const Points from = Points::Random(3, 12);
   EXPECT_NEAR(FitRotation(from, -from).determinant(), 1, 1e-12);
