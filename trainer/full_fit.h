@@ -2,7 +2,8 @@
 // The fit of level 0, by gradients and sensitivities of full rollouts, in four stages:
 //   choose        the model and the start values of its common factors (model_choice.h)
 //   common        the same factors again, by Levenberg-Marquardt on all fit frames, under an
-//                 observer whose gain falls to 0 (observer.h)
+//                 observer whose gain falls to 0 (observer.h); left out where the choice has fitted
+//                 single springs, which the next stage goes on from
 //   Gauss-Newton  every spring's own stiffness, dashpot and rest length, while it gets on; so, too
 //   Adam          goes on where contacts or chaotic motions make residuals too rough for that
 // A chain that bends (fit_model.h) ends with its common factors, fitted to more recordings.
