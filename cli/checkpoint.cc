@@ -90,8 +90,8 @@ void Checkpoint::ExpectReplaceable(bool force) const {
   try {
     twin = ReadTwin(path_);
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: is there and no twin ({}); choose another name", path_,
-                            error.what()));
+    throw Error(
+        fmt::format("{}: is there and no twin ({}); choose another name", path_, error.what()));
   }
   if (force) return;
   throw Error(fmt::format("{}: {}", path_,
