@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/error.h"
@@ -27,6 +28,18 @@ void ExpectSameObject(const std::string& path, const Recording& recording,
   ExpectSame(path, first_path, "frames a second", recording.fps, first.fps);
 }
 
+// Whether anything measured is seen after frame 0, in the frames for fitting.
+bool SeesMotion(const Recording& recording) {
+  for (const std::vector<Points>* seen :
+       {&recording.points, &recording.surface, &recording.track}) {
+    const int frames = std::min(recording.train_frames, static_cast<int>(seen->size()));
+    for (int t = 1; t < frames; ++t) {
+      if ((*seen)[static_cast<std::size_t>(t)].array().isFinite().any()) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
@@ -34,6 +47,10 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
   for (const RecordingEntry& entry : entries) {
     data.recordings.push_back(ReadRecording(entry.path));
     ExpectSameObject(entry.path, data.recordings.back(), entries[0].path, data.recordings[0]);
+    if (!SeesMotion(data.recordings.back())) {
+      throw Error(fmt::format("{}: no point is seen in frames 1 to {}: there is nothing to fit",
+                              entry.path, data.recordings.back().train_frames - 1));
+    }
     const int own = -static_cast<int>(data.recordings.size());
     data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
                                                                         : own);

@@ -10,8 +10,9 @@
 namespace physpring {
 
 // Reads the recordings that are listed (dataset.h). Those of which nothing is said count as
-// continuous recordings of their own. Throws Error if one cannot be read, or naming both files if
-// two differ in points, interior particles, controllers or frame rate.
+// continuous recordings of their own. Throws Error if one cannot be read or sees nothing after
+// frame 0 of what is for fitting, or naming both files if two differ in points, interior particles,
+// controllers or frame rate.
 FitData ReadFitData(const std::vector<RecordingEntry>& entries);
 
 }  // namespace physpring

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -178,6 +179,17 @@ TEST_F(Train, OverwritesAFinishedTwinOnlyByForce) {
   const ProgramResult resumed = RunProgram(words + Words{"--resume"});
   EXPECT_EQ(resumed.status, 0) << resumed.errors;
   EXPECT_TRUE(ReadFile(twin_) == bytes);
+}
+
+TEST_F(Train, NeedsPointsThatAreSeenAfterTheFirstFrame) {
+  Recording recording = MovingRope(8, 12);
+  for (std::size_t t = 1; t < recording.points.size(); ++t) {
+    recording.points[t].setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  WriteRecording(recording, other_);
+  EXPECT_TRUE(FailsWith(RunProgram({"train", other_, "-o", twin_}),
+                        other_ + ": no point is seen in frames 1 to "));
+  EXPECT_FALSE(std::filesystem::exists(twin_));
 }
 
 TEST_F(Train, NeverOverwritesWhatIsNoTwin) {
