@@ -54,6 +54,7 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
          "is of --method full");
   expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
          "needs one ratio for each level but level 0");
+  expect(learned || options.levels > 1, "--reduction", "needs --levels 2 or more");
   expect(learned || options.network.features == TrainOptions::Network::Features::kLearned,
          "--features", "is of --reduction learned");
   expect(!two_stage || arguments.effects.empty(), "--effects", "is of --method full");

@@ -28,14 +28,10 @@ void ExpectSameObject(const std::string& path, const Recording& recording,
   ExpectSame(path, first_path, "frames a second", recording.fps, first.fps);
 }
 
-// Whether anything measured is seen after frame 0, in the frames for fitting.
+// Whether a particle is seen after frame 0, in the frames for fitting.
 bool SeesMotion(const Recording& recording) {
-  for (const std::vector<Points>* seen :
-       {&recording.points, &recording.surface, &recording.track}) {
-    const int frames = std::min(recording.train_frames, static_cast<int>(seen->size()));
-    for (int t = 1; t < frames; ++t) {
-      if ((*seen)[static_cast<std::size_t>(t)].array().isFinite().any()) return true;
-    }
+  for (int t = 1; t < recording.train_frames; ++t) {
+    if (recording.points[static_cast<std::size_t>(t)].array().isFinite().any()) return true;
   }
   return false;
 }

@@ -72,6 +72,16 @@ TEST_F(Diagnose, IsNotJudgedByWhatItFits) {
   }
 }
 
+TEST_F(Diagnose, NeedsFramesToFitAndOthersToJudgeBy) {
+  const std::string two = folder_.File("two.npz");
+  Recording recording = RecordingOfMotion(SmallTwin(1), 3);
+  recording.points.resize(2);
+  recording.controllers.resize(2);
+  WriteRecording(recording, two);
+  EXPECT_TRUE(FailsWith(RunProgram({"diagnose", twin_, two, "-o", output_}),
+                        "2 frames are too few: none is left to judge by"));
+}
+
 // A twin that was trained on the motion of a body that weighs more on one side.
 class DiagnoseAnew : public Diagnose {
  protected:

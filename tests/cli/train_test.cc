@@ -309,7 +309,7 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--levels", "5"}, "--ratios: needs one ratio for each level but level 0");
   refused({"--levels", "2", "--ratios", "1.5"}, "--ratios: takes a number from 0 to 1");
   refused({"--reduction", "best"}, "--reduction: takes learned or random or gramian or kmeans");
-  refused({"--reduction", "kmeans", "--features", "positions"},
+  refused({"--levels", "2", "--reduction", "kmeans", "--features", "positions"},
           "--features: is of --reduction learned");
   refused({"--method", "three-stage"}, "--method: takes full or two-stage, not 'three-stage'");
   for (const char* epochs : {"-1", "0", "2.5", "ten", "3x", ""}) {
@@ -323,6 +323,7 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--seed", "-3"},
           "--seed: takes a whole number from 0 to 18446744073709551615, not '-3'");
   refused({"--neighbours", "8", "--method", "two-stage"}, "--neighbours: is chosen by two-stage");
+  refused({"--reduction", "kmeans"}, "--reduction: needs --levels 2 or more");
   refused({"--self-collision"}, "--self-collision: is of --method two-stage");
   refused({"--resume", "--force"}, "--resume excludes --force");
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "trainer/diagnosis/effect_loop.h"
 #include "trainer/diagnosis/effect_problem.h"
@@ -42,6 +43,22 @@ std::vector<SplitRecording> SplitAll(const std::vector<Recording>& recordings,
   }
   for (const Recording& recording : held_out) splits.push_back(UseAll(recording, Use::kHeld));
   return splits;
+}
+
+bool HasFrames(const std::vector<SplitRecording>& splits, Use use) {
+  return std::any_of(splits.begin(), splits.end(),
+                     [use](const SplitRecording& split) { return split.last(use) > 0; });
+}
+
+// There must be frames to fit effects to, and others to judge them by.
+void ExpectSplit(const std::vector<SplitRecording>& splits) {
+  constexpr std::pair<Use, const char*> kWanted[] = {{Use::kFit, "fit"}, {Use::kHeld, "judge by"}};
+  for (const auto& [use, purpose] : kWanted) {
+    if (HasFrames(splits, use)) continue;
+    const Recording& recording = *splits[0].recording;
+    throw Error(fmt::format("recording {}: {} frames are too few: none is left to {}",
+                            recording.name, recording.frame_count(), purpose));
+  }
 }
 
 double NoiseOf(const std::vector<SplitRecording>& splits) {
@@ -107,6 +124,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     result.judged.push_back(recording.name);
   }
   std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
+  ExpectSplit(splits);
   const double noise = NoiseOf(splits);
   for (SplitRecording& split : splits) result.resting_frames += LeaveOutRest(noise, &split);
   result.noise_floor = TrackNoiseFloor(noise);

@@ -78,7 +78,7 @@ struct Diagnosis {
 
 // `held_out` may be empty: then the future frames of the recordings are held out, or blocks of
 // frames where a recording has no future. Throws Error if a recording is not of the twin's object,
-// or the twin cannot be simulated.
+// no frame is left to fit or to judge by, or the twin cannot be simulated.
 Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
                    const std::vector<Recording>& held_out, const DiagnosisOptions& options);
 

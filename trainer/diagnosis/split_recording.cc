@@ -65,7 +65,10 @@ SplitRecording UseAll(const Recording& recording, Use use) {
 
 SplitRecording HoldOutFrames(const Recording& recording) {
   SplitRecording split = UseAll(recording, Use::kFit);
-  const auto block = static_cast<std::size_t>(std::max(1.0, kHeldBlock * recording.fps));
+  // of a short recording still one block of the four
+  const int most = std::max(1, recording.frame_count() / 4);
+  const int usual = std::max(1, static_cast<int>(kHeldBlock * recording.fps));
+  const auto block = static_cast<std::size_t>(std::min(usual, most));
   const auto future = static_cast<std::size_t>(recording.train_frames);
   const bool has_future = future < split.use.size();
   for (std::size_t frame = 1; frame < split.use.size(); ++frame) {

@@ -21,8 +21,8 @@ struct SplitRecording {
 // All frames for one use.
 SplitRecording UseAll(const Recording& recording, SplitRecording::Use use);
 
-// The future of a recording (from train_frames on) held out, or every fourth block of 0.3 s where
-// it has none; the rest to fit.
+// The future of a recording (from train_frames on) held out, or every fourth block where it has
+// none, of 0.3 s or a quarter of the recording; the rest to fit.
 SplitRecording HoldOutFrames(const Recording& recording);
 
 // Takes away the use of frames from half a second after everything came to rest, and after half of

@@ -39,6 +39,15 @@ TEST(SplitRecording, HoldsOutEveryFourthBlockWhereThereIsNoFuture) {
   EXPECT_EQ(Count(split, Use::kHeld), 6);
 }
 
+TEST(SplitRecording, ShorterBlocksForAShortRecording) {
+  const Recording recording = Frames(10, 10);  // blocks of two frames, not of three
+  const SplitRecording split = HoldOutFrames(recording);
+  EXPECT_EQ(split.use[5], Use::kFit);
+  EXPECT_EQ(split.use[6], Use::kHeld);
+  EXPECT_EQ(split.use[7], Use::kHeld);
+  EXPECT_EQ(Count(split, Use::kHeld), 2);
+}
+
 // Swings until frame `last`, then rests.
 Recording ComesToRest(int frames, int train_frames, int last, double noise) {
   Recording recording = Frames(frames, train_frames);
