@@ -14,6 +14,8 @@
 #include <limits>
 #include <vector>
 
+#include "trainer/state_arrays.h"
+
 namespace physpring {
 
 // All that the next generation depends on, besides seed and population. n variables.
@@ -43,8 +45,14 @@ class CmaEs {
   // numbers are worst.
   void Tell(const std::vector<double>& objective);
 
+  // The start's objective, for `best`: only what is better replaces it.
+  void TellStart(double objective) { state_.best_objective = objective; }
+
   const CmaEsState& state() const { return state_; }
-  void set_state(CmaEsState state) { state_ = std::move(state); }
+
+  // Adds to, and reads from, the arrays of a fit. Load throws Error if they do not belong to it.
+  void Save(StateArrays* arrays) const;
+  void Load(const StateArrays& arrays);
 
  private:
   std::vector<Eigen::VectorXd> Sample() const;  // before the fold

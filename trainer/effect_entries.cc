@@ -16,7 +16,8 @@ EffectEntries::EffectEntries(std::vector<EffectValues> start, double moment_unit
       const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
       const double scale = parameter.scale * (parameter.key.ends_with("_n_m") ? moment_unit : 1);
       for (int n = 0; n < parameter.count; ++n) {
-        entries_.push_back({*value++, parameter.low, parameter.high, scale, logarithmic});
+        entries_.push_back(
+            {*value++, parameter.low, parameter.high, scale, logarithmic, parameter.count > 1});
       }
     }
   }

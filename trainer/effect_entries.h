@@ -18,6 +18,8 @@ class EffectEntries {
   explicit EffectEntries(std::vector<EffectValues> start, double moment_unit = 1);
 
   int size() const { return static_cast<int>(entries_.size()); }
+  // Whether an entry is one of several of a kind, as those along a body are.
+  bool is_of_several(int i) const { return entries_[static_cast<std::size_t>(i)].of_several; }
   std::vector<EffectValues> Apply(const Eigen::VectorXd& x) const;
 
   // d loss / d x, from the derivatives with respect to the values of each effect. 0 where a value
@@ -28,7 +30,7 @@ class EffectEntries {
  private:
   struct Entry {
     double start, low, high, scale;
-    bool logarithmic;
+    bool logarithmic, of_several;
 
     double Unbounded(double x) const;
   };

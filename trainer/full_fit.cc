@@ -15,13 +15,14 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostCommonRecordings = 4;  // that common factors are fitted to
-constexpr int kStepsPerGain = 6;          // of common factors
-constexpr int kFirstChainGain = 3;        // of a chain's, which go on from those of the choice ...
-constexpr int kChainStepsPerGain = 20;    // ... and take longer
-constexpr int kFirstSpringGain = 3;       // of kObserverGains
-constexpr int kFollowedSteps = 3;         // of Gauss-Newton with each gain before the last ...
-constexpr int kGaussNewtonSteps = 15;     // ... and with that one
+constexpr int kMostCommonRecordings = 4;   // that common factors are fitted to
+constexpr int kStepsPerGain = 6;           // of common factors
+constexpr int kFirstChainGain = 3;         // of a chain's, which go on from those of the choice ...
+constexpr int kChainStepsPerGain = 20;     // ... and take longer
+constexpr int kMostSearchRecordings = 24;  // of free motions of a chain
+constexpr int kFirstSpringGain = 3;        // of kObserverGains
+constexpr int kFollowedSteps = 3;          // of Gauss-Newton with each gain before the last ...
+constexpr int kGaussNewtonSteps = 15;      // ... and with that one
 constexpr int kAdamSteps = 200;
 constexpr int kPatience = 40;           // Adam ends after so many steps in a row that gain little
 constexpr double kLearningRate = 0.03;  // of log-stiffnesses; others in proportion to their prior
@@ -29,6 +30,7 @@ constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so 
 
 // Parts of the time at which stages are done, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.45, kCommon = 0.5, kFollowed = 0.7, kSprings = 0.8;
+constexpr double kChainCommon = 0.7;  // of a chain, which goes on with free motions
 
 }  // namespace
 
@@ -43,9 +45,7 @@ Parameters FullFit::SpringParameters() const {
 }
 
 SpringMassSystem FullFit::CurrentSystem() const {
-  if (state_.stage != Stage::kChoose && state_.stage != Stage::kCommon) {
-    return SpringParameters().Apply(state_.x);
-  }
+  if (state_.stage > Stage::kSearch) return SpringParameters().Apply(state_.x);
   return (state_.stage == Stage::kChoose ? choice_.Best() : model_).System(first());
 }
 
@@ -88,12 +88,27 @@ void FullFit::StepCommon() {
   state_.damping = 1e-2;
   if (++state_.gain <= kLastGain) return;
   if (chain) {
-    state_.x = state_.best = Eigen::VectorXd::Zero(SpringParameters().size());
-    state_.stage = Stage::kDone;
+    state_.stage = Stage::kSearch;
+    BeginSearch();
     return;
   }
   BeginGaussNewton(Eigen::VectorXd::Zero(SpringParameters().size()));
   if (GaussNewtonSteps() == 0) BeginAdam(true);
+}
+
+void FullFit::BeginSearch() {
+  search_.emplace(model_.factors, model_.Factors(first()).WholeBodyEntries(), options_.epochs,
+                  options_.seed);
+}
+
+void FullFit::StepSearch() {
+  search_->Step(model_, FitEpisodes(data_, kMostSearchRecordings), options_);
+  status_ = fmt::format("{}, free motions: {:.3f} mm", model_.candidate.Label(),
+                        1e3 * search_->best_error());
+  model_.factors = search_->BestFactors();
+  if (!search_->done()) return;
+  state_.x = state_.best = Eigen::VectorXd::Zero(SpringParameters().size());
+  state_.stage = Stage::kDone;
 }
 
 void FullFit::BeginGaussNewton(const Eigen::VectorXd& x) {
@@ -220,6 +235,9 @@ bool FullFit::Step() {
     case Stage::kCommon:
       StepCommon();
       return true;
+    case Stage::kSearch:
+      StepSearch();
+      return true;
     case Stage::kGaussNewton:
       StepGaussNewton();
       return true;
@@ -240,12 +258,14 @@ double FullFit::Progress() const {
     case Stage::kChoose:
       return between(0, kChosen, choice_.Progress());
     case Stage::kCommon:
-      if (model_.candidate.is_chain()) {  // ends with them
+      if (model_.candidate.is_chain()) {
         const double part = static_cast<double>(state_.iteration) / kChainStepsPerGain;
-        return between(kChosen, 1,
+        return between(kChosen, kChainCommon,
                        (state_.gain - kFirstChainGain + part) / (kLastGain + 1 - kFirstChainGain));
       }
       return between(kChosen, kCommon, static_cast<double>(state_.gain) / (kLastGain + 1));
+    case Stage::kSearch:
+      return between(kChainCommon, 1, search_->Progress());
     case Stage::kGaussNewton:
       if (state_.gain < kLastGain) {
         return between(kCommon, kFollowed,
@@ -269,6 +289,8 @@ std::string FullFit::Part() const {
       return "choosing the model";
     case Stage::kCommon:
       return "common factors";
+    case Stage::kSearch:
+      return "free motions";
     case Stage::kGaussNewton:
       return "single springs (Gauss-Newton)";
     case Stage::kAdam:
@@ -295,6 +317,7 @@ std::map<std::string, NpzArray> FullFit::Save() const {
   arrays["train/best"] = StoreVector(state_.best);
   arrays["train/adam_mean"] = StoreVector(state_.adam_mean);
   arrays["train/adam_mean_square"] = StoreVector(state_.adam_mean_square);
+  if (state_.stage == Stage::kSearch) search_->Save(&arrays);
   return arrays;
 }
 
@@ -317,6 +340,10 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
   state_.best = LoadVector(arrays, "best", state_.stage >= Stage::kAdam ? counters[5] : 0);
   state_.adam_mean = LoadVector(arrays, "adam_mean", counters[6]);
   state_.adam_mean_square = LoadVector(arrays, "adam_mean_square", counters[6]);
+  if (state_.stage == Stage::kSearch) {
+    BeginSearch();
+    search_->Load(arrays);
+  }
 }
 
 Twin FullFit::Result() const {

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fit of level 0, by gradients and sensitivities of full rollouts, in four stages:
+// The fit of level 0, by gradients and sensitivities of full rollouts, in stages:
 //   choose        the model and the start values of its common factors (model_choice.h)
 //   common        the same factors again, by Levenberg-Marquardt on all fit frames, under an
 //                 observer whose gain falls to 0 (observer.h); left out where the choice has fitted
 //                 single springs, which the next stage goes on from
 //   Gauss-Newton  every spring's own stiffness, dashpot and rest length, while it gets on; so, too
 //   Adam          goes on where contacts or chaotic motions make residuals too rough for that
-// A chain that bends (fit_model.h) ends with its common factors, fitted to more recordings.
+// A chain that bends (fit_model.h) has its common factors fitted to more recordings, then
+//   search        goes on with them, by values of the error alone (free_motion_search.h)
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FULL_FIT_H_
 #define PHYSPRING_TRAINER_FULL_FIT_H_
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "trainer/fitter.h"
+#include "trainer/free_motion_search.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/model_choice.h"
 #include "trainer/parameters.h"
@@ -38,7 +41,7 @@ class FullFit : public Fitter {
   Twin Result() const override;
 
  private:
-  enum class Stage { kChoose, kCommon, kGaussNewton, kAdam, kDone };
+  enum class Stage { kChoose, kCommon, kSearch, kGaussNewton, kAdam, kDone };
 
   // Everything that the next step depends on, besides data, options and the choice.
   struct State {
@@ -58,6 +61,8 @@ class FullFit : public Fitter {
 
   void StepChoose();
   void StepCommon();
+  void BeginSearch();
+  void StepSearch();
   void StepGaussNewton();
   void StepAdam();
   void BeginGaussNewton(const Eigen::VectorXd& x);
@@ -74,6 +79,7 @@ class FullFit : public Fitter {
   ModelChoice choice_;
   ChosenModel model_;  // from the stage `common` on
   std::vector<Episode> all_;
+  std::optional<FreeMotionSearch> search_;  // from that stage on
   State state_;
   std::string status_;
 };

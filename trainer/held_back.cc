@@ -38,6 +38,14 @@ std::vector<Episode> HeldBack::FitEpisodes() const {
   return episodes;
 }
 
+std::vector<JudgedEpisode> HeldBack::JudgedEpisodes() const {
+  std::vector<JudgedEpisode> episodes;
+  for (const Judged& by : judged) {
+    episodes.push_back({{by.whole, by.whole->train_frames}, &by.held_back});
+  }
+  return episodes;
+}
+
 std::vector<Episode> FitEpisodes(const FitData& data, int most) {
   std::vector<Episode> episodes;
   for (const Recording& recording : data.recordings) {

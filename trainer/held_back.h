@@ -8,6 +8,7 @@
 
 #include "trainer/fitter.h"
 #include "trainer/rollout.h"
+#include "trainer/track_error.h"
 
 namespace physpring {
 
@@ -20,7 +21,8 @@ struct HeldBack {
   std::vector<Recording> fit;  // with the held-back frames unseen
   std::vector<Judged> judged;
 
-  std::vector<Episode> FitEpisodes() const;  // all fit frames; *this must outlive them
+  std::vector<Episode> FitEpisodes() const;           // all fit frames; *this must outlive them
+  std::vector<JudgedEpisode> JudgedEpisodes() const;  // the same of those that judge
 };
 
 // With four or more continuous runs, whole runs are held back (a quarter of them, spread evenly);

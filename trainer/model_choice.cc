@@ -9,11 +9,10 @@
 #include <limits>
 #include <numeric>
 
-#include "trainer/lifted_motion.h"
 #include "trainer/observer.h"
 #include "trainer/parallel.h"
+#include "trainer/track_error.h"
 #include "twin/error.h"
-#include "twin/stability.h"
 
 namespace physpring {
 namespace {
@@ -32,8 +31,7 @@ constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground), and of the rigidity's (of a rod).
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
 constexpr std::array<double, 3> kRigidities = {0, -2, 2};
-constexpr double kSimpler = 0.9;      // a chain has a tenth of the others' parameters: a tie is its
-constexpr double kLeastError = 1e-9;  // m
+constexpr double kSimpler = 0.9;  // a chain has a tenth of the others' parameters: a tie is its
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The factors that a search begins from.
@@ -84,25 +82,12 @@ void ModelChoice::SearchStart(ChosenModel* model) const {
   }
 }
 
-// Of held-back frames, under an observer of this gain: the geometric mean over recordings, so that
-// one in which a free motion loses its phase does not decide.
+// Of held-back frames, under an observer of this gain.
 double ModelChoice::TrackError(const SpringMassSystem& system, const Candidate& candidate,
                                double gain) const {
-  double sum = 0;  // of logarithms
-  for (const HeldBack::Judged& judged : held_back_.judged) {
-    RolloutOptions options = FollowOptions(first(), candidate, options_).rollout;
-    if (options.substeps == 0) {
-      options.substeps =
-          StableSubsteps(ComputeStabilityBound(system), 1 / judged.whole->fps, kStepSafety);
-    }
-    options.observer_gain = gain;
-    const int frames = judged.whole->train_frames;
-    const auto rollout = RollOut(system, {judged.whole, frames}, options);
-    if (rollout->diverged()) return kInfinity;
-    const auto error = MeanTrackError(rollout->positions(), judged.held_back, 1, frames);
-    sum += std::log(std::max(error.value_or(0), kLeastError));
-  }
-  return std::exp(sum / static_cast<double>(held_back_.judged.size()));
+  RolloutOptions options = FollowOptions(first(), candidate, options_).rollout;
+  options.observer_gain = gain;
+  return GeometricTrackError(system, held_back_.JudgedEpisodes(), options);
 }
 
 // Contenders do not depend on each other: the first that have not finished their round go a step,

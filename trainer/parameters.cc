@@ -75,6 +75,18 @@ bool Parameters::IsControllerSpring(int e) const {
   return std::max(base_.springs[e][0], base_.springs[e][1]) >= base_.node_count();
 }
 
+std::vector<int> Parameters::WholeBodyEntries() const {
+  std::vector<int> entries;
+  for (int i = 0; i < classes_; ++i) {
+    const bool dashpot = i == kDashpot || i == kControllerDashpot;
+    if (!dashpot || options_.dashpots) entries.push_back(i);
+  }
+  for (int i = 0; i < effect_count(); ++i) {
+    if (!effects_.is_of_several(i)) entries.push_back(effects_at_ + i);
+  }
+  return entries;
+}
+
 SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
   SpringMassSystem system = base_;
   for (int e = 0; e < springs_; ++e) {

@@ -41,6 +41,9 @@ class Parameters {
   // length.
   enum class Kind { kGlobal, kStiffness, kDashpot, kRestLength };
   Kind kind(int i) const;
+  // The entries of one value for the whole body: not of classes, single springs, or values of
+  // effects along the body, and none that does nothing.
+  std::vector<int> WholeBodyEntries() const;
   // The entry of the ground's friction; -1: none.
   int friction() const { return options_.contact ? kFriction : -1; }
   // The first entry of the effects' values, and how many there are.

@@ -178,41 +178,22 @@ double TwoStageFit::Progress() const {
 }
 
 std::map<std::string, NpzArray> TwoStageFit::Save() const {
-  const CmaEsState& search = search_.state();
   StateArrays state = {
-      {"train/generation",
-       StoreCounters({search.generation, static_cast<int>(objectives_.size())})},
       {"train/objectives", NpzArray::Doubles({objectives_.size()}, objectives_.data())},
-      {"train/search_scalars",
-       StoreVector(Eigen::Vector2d(search.step_size, search.best_objective))},
-      {"train/search_mean", StoreVector(search.mean)},
-      {"train/search_covariance", StoreVector(search.covariance.reshaped())},
-      {"train/search_step_path", StoreVector(search.step_path)},
-      {"train/search_path", StoreVector(search.path)},
-      {"train/search_best", StoreVector(search.best)},
+      {"train/objective_count", StoreCounters({static_cast<int>(objectives_.size())})},
   };
+  search_.Save(&state);
   if (first_order_) first_order_->Save(&state);
   return state;
 }
 
 void TwoStageFit::Load(const std::map<std::string, NpzArray>& state) {
-  constexpr int n = kPhysTwinVariables;
-  const std::vector<int> counters = LoadCounters(state, "generation", 2);
-  const Eigen::VectorXd objectives = LoadVector(state, "objectives", counters[1]);
-  const Eigen::VectorXd scalars = LoadVector(state, "search_scalars", 2);
-  CmaEsState search;
-  search.generation = counters[0];
-  search.step_size = scalars[0];
-  search.best_objective = scalars[1];
-  search.mean = LoadVector(state, "search_mean", n);
-  search.covariance = LoadVector(state, "search_covariance", n * n).reshaped(n, n);
-  search.step_path = LoadVector(state, "search_step_path", n);
-  search.path = LoadVector(state, "search_path", n);
-  search.best = LoadVector(state, "search_best", n);
-  search_.set_state(std::move(search));
+  search_.Load(state);
+  const int count = LoadCounters(state, "objective_count", 1)[0];
+  const Eigen::VectorXd objectives = LoadVector(state, "objectives", count);
   objectives_.assign(objectives.begin(), objectives.end());
   first_order_.reset();
-  if (counters[0] < kGenerations) return;
+  if (search_.state().generation < kGenerations) return;
   BeginFirstOrder();
   first_order_->Load(state);
   if (first_order_->done()) status_ = DescribeBest();

@@ -134,7 +134,9 @@ TEST(CmaEs, IsUnmovedByAMonotoneChangeOfTheObjective) {
 TEST(CmaEs, GoesOnFromASavedState) {
   CmaEs whole = Search(Constant(4, 0.5), 12, 20, Rosenbrock);
   CmaEs resumed(Constant(4, 0.1), 1, 12);
-  resumed.set_state(Search(Constant(4, 0.5), 12, 13, Rosenbrock).state());
+  StateArrays saved;
+  Search(Constant(4, 0.5), 12, 13, Rosenbrock).Save(&saved);
+  resumed.Load(saved);
   for (int i = 13; i < 20; ++i) resumed.Tell(Values(resumed.Ask(), Rosenbrock));
   EXPECT_EQ(whole.Ask(), resumed.Ask());
   EXPECT_EQ(whole.state().best, resumed.state().best);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "tests/support/swung_rope.h"
+#include "trainer/fit_model.h"
 #include "trainer/start_system.h"
 #include "trainer/state_arrays.h"
 #include "twin/error.h"
@@ -120,6 +121,33 @@ TEST(FullFit, ResumesFromAnyStep) {
   EXPECT_FALSE(stopped->Step());
   EXPECT_EQ(whole.Result().levels[0].system.stiffness,
             stopped->Result().levels[0].system.stiffness);
+}
+
+// What moved as a chain that bends gets one, whose fit ends with a search among free motions.
+TEST(FullFit, ResumesTheFitOfAChain) {
+  Recording recording = SwungRope(8, kFrames);
+  recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
+  MoveAs(StartSystem(recording, Candidates(recording, {}).back(), 8), true, &recording);
+  FitData data;
+  data.recordings.push_back(recording);
+  data.continuous_recording.push_back(0);
+  TrainOptions options;
+  options.epochs = 3;
+  FullFit whole(data, options);
+  auto stopped = std::make_unique<FullFit>(data, options);
+  int searched = 0;
+  for (double last = 0; whole.Step(); last = whole.Progress()) {
+    searched += whole.Part() == "free motions" ? 1 : 0;
+    ASSERT_GE(whole.Progress(), last);
+    const StateArrays state = stopped->Save();
+    stopped = std::make_unique<FullFit>(data, options);
+    stopped->Load(state);
+    ASSERT_TRUE(SameBits(stopped->Save(), state));
+    ASSERT_TRUE(stopped->Step());
+    ASSERT_TRUE(SameBits(whole.Save(), stopped->Save()));
+  }
+  EXPECT_EQ(searched, options.epochs);
+  EXPECT_LT(TrackError(whole.Result(), recording), 0.05 * MotionlessError(recording));
 }
 
 TEST(FullFit, GivesTheSameBitsForAnyNumberOfThreads) {
