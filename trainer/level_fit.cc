@@ -13,6 +13,7 @@
 #include "trainer/lifted_problem.h"
 #include "trainer/network/level_network.h"
 #include "trainer/observer.h"
+#include "twin/error.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -188,6 +189,10 @@ void LevelFit::StepSprings() {
   springs_ = after.x;
   damping_ = after.damping;
   mean_square_ = after.mean_square;
+  if (options_.substeps > 0 && !std::isfinite(mean_square_)) {
+    throw Error(fmt::format("level {} diverges: {} sub-steps a frame are too few", level_,
+                            options_.substeps));
+  }
   status_ =
       fmt::format("level {}, single springs: {:.3f} mm", level_, PointMillimetres(mean_square_));
   const bool slow = iteration_ > 0 && after.mean_square > 0.99 * before.mean_square;

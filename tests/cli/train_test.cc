@@ -181,6 +181,24 @@ TEST_F(Train, OverwritesAFinishedTwinOnlyByForce) {
   EXPECT_TRUE(ReadFile(twin_) == bytes);
 }
 
+TEST_F(Train, SaysThatALevelNeedsMoreSubsteps) {
+  const Words train = {"train", rope_, "--epochs", "3", "--neighbours", "6", "-o"};
+  ASSERT_EQ(RunProgram(train + Words{twin_}).status, 0);
+  const Words coarse = {folder_.File("coarse.twin.npz"),
+                        "--from",
+                        twin_,
+                        "--levels",
+                        "2",
+                        "--reduction",
+                        "kmeans",
+                        "--network-epochs",
+                        "0",
+                        "--substeps",
+                        "1"};
+  EXPECT_TRUE(
+      FailsWith(RunProgram(train + coarse), "level 1 diverges: 1 sub-steps a frame are too few"));
+}
+
 TEST_F(Train, NeedsPointsThatAreSeenAfterTheFirstFrame) {
   Recording recording = MovingRope(8, 12);
   for (std::size_t t = 1; t < recording.points.size(); ++t) {
