@@ -76,11 +76,11 @@ void Measure(benchmark::State& state, const SpringMassSystem& dense, const Sprin
 }
 
 void Register(const std::vector<SpringMassSystem>& levels) {
-  for (const char* steps : {"equal", "own"}) {
+  for (const bool own : {false, true}) {
     for (std::size_t k = 0; k < levels.size(); ++k) {
-      const int substeps = OwnSubsteps(steps[0] == 'e' ? levels[0] : levels[k]);
-      benchmark::RegisterBenchmark(fmt::format("{}/level{}/{}/{}", steps, k, levels[k].node_count(),
-                                               levels[k].spring_count())
+      const int substeps = OwnSubsteps(levels[own ? k : 0]);
+      benchmark::RegisterBenchmark(fmt::format("{}/level{}/{}/{}", own ? "own" : "equal", k,
+                                               levels[k].node_count(), levels[k].spring_count())
                                        .c_str(),
                                    Measure, levels[0], levels[k], substeps)
           ->UseManualTime()

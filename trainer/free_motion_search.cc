@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/free_motion_search.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "trainer/fit_model.h"
