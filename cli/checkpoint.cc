@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFinishedTraining = "train/finished";
+constexpr const char* kStateVersion = "train/version";
+constexpr int kVersion = 1;  // of what fitters save; to be raised with each change of their stages
 
 Json NumberOrAuto(int number) { return number > 0 ? Json(number) : Json("auto"); }
 
@@ -131,6 +133,13 @@ void Checkpoint::Resume(Fitter* fitter) const {
   if (!Exists(path_)) return;
   const Twin twin = ReadTwin(path_);
   ExpectSameTraining(twin);
+  const auto version = twin.training_state.find(kStateVersion);
+  if (version == twin.training_state.end() ||
+      version->second.ToInts() != std::vector<int>{kVersion}) {
+    throw Error(fmt::format(
+        "{}: its training was begun by another version of physpring; --force trains it anew",
+        path_));
+  }
   try {
     fitter->Load(twin.training_state);
   } catch (const Error& error) {
@@ -147,6 +156,7 @@ Twin Checkpoint::Write(const Fitter& fitter, bool finished) const {
   twin.training_state = fitter.Save();
   const int flag = finished ? 1 : 0;
   twin.training_state[kFinishedTraining] = NpzArray::Ints({}, &flag);
+  twin.training_state[kStateVersion] = NpzArray::Ints({}, &kVersion);
   WriteTwin(twin, path_);
   return twin;
 }

@@ -54,9 +54,14 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
          "is of --method full");
   expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
          "needs one ratio for each level but level 0");
+  const bool given = options.ratios != TrainOptions().ratios;
+  expect(!given || options.ratios.size() + 1 == static_cast<std::size_t>(options.levels),
+         "--ratios", "are of levels 1, 2, ...: --levels must be one more than there are");
   expect(learned || options.levels > 1, "--reduction", "needs --levels 2 or more");
-  expect(learned || options.network.features == TrainOptions::Network::Features::kLearned,
-         "--features", "is of --reduction learned");
+  const bool learned_features =
+      options.network.features == TrainOptions::Network::Features::kLearned;
+  expect(learned || learned_features, "--features", "is of --reduction learned");
+  expect(learned_features || options.levels > 1, "--features", "needs --levels 2 or more");
   expect(!two_stage || arguments.effects.empty(), "--effects", "is of --method full");
   expect(arguments.from.empty() || arguments.effects.empty(), "--effects",
          "and --from exclude each other: level 0 comes with its effects");
@@ -88,6 +93,7 @@ void Warn(const std::vector<std::string>& warnings) {
 // A twin that was trained on the same recordings.
 Twin ReadLevel0(const std::string& path, const FitData& data) {
   Twin twin = ReadTwin(path);
+  WarnIfUnfinished(twin, path);
   ExpectSameObject(twin, data.recordings[0]);
   for (const Recording& recording : data.recordings) {
     const bool known = std::any_of(twin.trained_on.begin(), twin.trained_on.end(),

@@ -13,7 +13,7 @@ namespace {
 constexpr double kReach = 4;         // of each factor (parameters.h) from the start, either way
 constexpr double kDeviation = 0.25;  // of the first generation
 constexpr int kMostGenerations = 60;
-constexpr int kGenerationPatience = 7;
+constexpr int kGenerationPatience = 10;
 constexpr double kWorthwhile = 0.99;  // of the error: what is worth as many generations again
 
 }  // namespace

@@ -240,6 +240,10 @@ TEST_F(Train, ResumesOnlyWhatWasTrainedTheSameWay) {
   fails({"--seed", "8"}, ": was trained with seed 7, not 8");
   fails({"--precision", "float"}, ": was trained with precision \"double\", not \"float\"");
   fails({"--method", "full"}, ": was trained with method \"two-stage\", not \"full\"");
+  Twin twin = ReadTwin(twin_);
+  ASSERT_EQ(twin.training_state.erase("train/version"), 1U);
+  WriteTwin(twin, twin_);
+  fails({}, twin_ + ": its training was begun by another version of physpring");
   WriteRecording(MovingRope(8, 11), other_);
   fails({}, ": recording 2 was other with hash ");
 }
@@ -342,6 +346,8 @@ TEST_F(Train, RefusesBadUsage) {
           "--seed: takes a whole number from 0 to 18446744073709551615, not '-3'");
   refused({"--neighbours", "8", "--method", "two-stage"}, "--neighbours: is chosen by two-stage");
   refused({"--reduction", "kmeans"}, "--reduction: needs --levels 2 or more");
+  refused({"--features", "positions"}, "--features: needs --levels 2 or more");
+  refused({"--levels", "2", "--ratios", "0.5,0.3"}, "--ratios: are of levels 1, 2, ...");
   refused({"--self-collision"}, "--self-collision: is of --method two-stage");
   refused({"--resume", "--force"}, "--resume excludes --force");
 }
