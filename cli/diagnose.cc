@@ -126,7 +126,9 @@ void Run(const DiagnoseArguments& arguments) {
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen.fit,
                                        chosen.held_out, arguments.options);
-  checkpoint.ExpectReplaceable(outputs.report, arguments.run.resume || arguments.run.force);
+  const bool replace = arguments.run.resume || arguments.run.force;
+  checkpoint.ExpectReplaceable(outputs.report, replace);
+  for (const std::string& output : {outputs.page, outputs.twin}) ExpectNew(output, replace);
   const Diagnosis diagnosis =
       DiagnoseWith(checkpoint, twin, chosen.fit, chosen.held_out, arguments);
   const std::string json = FormatDiagnosisJson(diagnosis);

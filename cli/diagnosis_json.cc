@@ -61,6 +61,11 @@ Json Vectors(const Points& vectors) {
 Json UnexplainedJson(const Diagnosis& diagnosis) {
   if (!diagnosis.unexplained) return nullptr;
   const Unexplained& left = *diagnosis.unexplained;
+  if (!left.located) {
+    return {{"track", left.track},  {"particle", nullptr}, {"position", nullptr},
+            {"from_s", nullptr},    {"to_s", nullptr},     {"direction", nullptr},
+            {"steadiness", nullptr}};
+  }
   return {{"track", left.track},
           {"particle", left.particle},
           {"position", Direction(left.position)},

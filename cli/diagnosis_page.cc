@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cli/diagnosis_text.h"
+#include "cli/picture/escape.h"
 #include "cli/residual_plots.h"
 #include "twin/effects/registry.h"
 
@@ -88,7 +89,7 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
       "0;text-align:left}}svg{{width:100%;border:1px solid "
       "#ccc}}.plots{{display:grid;grid-template-columns:1fr 1fr;gap:"
       "1em}}.plots text{{font-size:12px}}</style><h1>{0}</h1><p>{1}.</p><p>{2}.</p>",
-      title, Verdict(diagnosis), DescribeRecordings(diagnosis));
+      Escape(title), Escape(Verdict(diagnosis)), Escape(DescribeRecordings(diagnosis)));
   page += fmt::format(
       "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
       "<tr><td>before</td><td>{}</td><td>{}</td></tr><tr><td>after</td><td>{}</td><td>{}</td></tr>"

@@ -76,26 +76,34 @@ std::string Verdict(const Diagnosis& diagnosis) {
   }
   if (!diagnosis.unexplained) return verdict;
   const Unexplained& left = *diagnosis.unexplained;
-  return fmt::format(
-      "{}{} above the noise are unexplained: a force, largest on particle {}, mostly from {:.2f} "
-      "to {:.2f} s, then towards ({:.2f}, {:.2f}, {:.2f}), which {}",
-      verdict.empty() ? "" : verdict + "; ", InMillimetres(left.track), left.particle,
-      left.first_time, left.last_time, left.direction[0], left.direction[1], left.direction[2],
-      left.steadiness > kSteady ? "stays" : "turns");
+  verdict += fmt::format("{}{} above the noise are unexplained", verdict.empty() ? "" : "; ",
+                         InMillimetres(left.track));
+  if (!left.located) return verdict + ", and no force on what was fitted would explain them";
+  return verdict + fmt::format(
+                       ": a force, largest on particle {}, mostly from {:.2f} to {:.2f} s, then "
+                       "towards ({:.2f}, {:.2f}, {:.2f}), which {}",
+                       left.particle, left.first_time, left.last_time, left.direction[0],
+                       left.direction[1], left.direction[2],
+                       left.steadiness > kSteady ? "stays" : "turns");
 }
 
 std::string DescribeResidual(const Diagnosis& diagnosis) {
-  const ResidualPattern &before = diagnosis.residual_before, &after = diagnosis.residual_after;
-  std::string text =
-      fmt::format("missing force on a node: {:.3g} mN", 1e3 * before.root_mean_square);
-  if (!diagnosis.effects.empty()) {
-    text += fmt::format(" before, {:.3g} mN after", 1e3 * after.root_mean_square);
-  }
+  const auto force = [](const ResidualPattern& pattern, const char* when) {
+    return pattern.root_mean_square > 0
+               ? fmt::format("{:.3g} mN{} (noise makes {:.2g})", 1e3 * pattern.root_mean_square,
+                             when, 1e3 * pattern.noise)
+               : fmt::format("none{}", when);
+  };
+  const ResidualPattern& before = diagnosis.residual_before;
+  const bool changed = !diagnosis.effects.empty();
+  std::string text = "missing force on a node: " + force(before, changed ? " before" : "");
+  if (changed) text += ", " + force(diagnosis.residual_after, " after");
+  if (before.root_mean_square == 0) return text;
   return text + fmt::format(
-                    " (noise makes {:.2g}){}: {:.0f} % of its square one acceleration, cosine with "
-                    "the velocity {:.2f}, with the stretch {:.2f}",
-                    1e3 * before.noise, diagnosis.effects.empty() ? "" : "; before",
-                    100 * before.constant, before.with_velocity, before.with_stretch);
+                    "; {}{:.0f} % of its square one acceleration, cosine with the velocity {:.2f}, "
+                    "with the stretch {:.2f}",
+                    changed ? "before " : "", 100 * before.constant, before.with_velocity,
+                    before.with_stretch);
 }
 
 std::string DescribeRecordings(const Diagnosis& diagnosis) {

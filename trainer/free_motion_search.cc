@@ -3,9 +3,8 @@
 
 #include <limits>
 
-#include "trainer/fit_model.h"
+#include "trainer/free_motion_error.h"
 #include "trainer/parallel.h"
-#include "trainer/track_error.h"
 
 namespace physpring {
 namespace {
@@ -48,19 +47,8 @@ double FreeMotionSearch::Progress() const {
 
 void FreeMotionSearch::Step(const ChosenModel& model, const std::vector<Episode>& episodes,
                             const TrainOptions& options) {
-  const Recording& recording = *episodes.at(0).recording;
-  const TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
-  const Parameters factors = model.Factors(recording);
-  std::vector<JudgedEpisode> judged;
-  for (const Episode& episode : episodes) judged.push_back({episode, episode.recording});
-  const TrackProblem problem(factors, episodes, follow);
-  const auto error = [&](const Eigen::VectorXd& point) {
-    const SpringMassSystem system = factors.Apply(FactorsAt(point));
-    RolloutOptions rollout = follow.rollout;
-    rollout.substeps = problem.Substeps(system);
-    return rollout.substeps == 0 ? std::numeric_limits<double>::infinity()
-                                 : GeometricTrackError(system, judged, rollout);
-  };
+  const FreeMotionError free_motions(model, episodes, options);
+  const auto error = [&](const Eigen::VectorXd& point) { return free_motions(FactorsAt(point)); };
   if (search_.state().generation == 0) {
     gained_error_ = error(search_.state().best);
     search_.TellStart(gained_error_);

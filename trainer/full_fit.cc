@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "trainer/adam.h"
+#include "trainer/free_motion_descent.h"
 #include "trainer/observer.h"
 #include "twin/error.h"
 #include "twin/stability.h"
@@ -20,6 +21,7 @@ constexpr int kStepsPerGain = 6;           // of common factors
 constexpr int kFirstChainGain = 3;         // of a chain's, which go on from those of the choice ...
 constexpr int kChainStepsPerGain = 20;     // ... and take longer
 constexpr int kMostSearchRecordings = 24;  // of free motions of a chain
+constexpr int kDescents = 6;               // of a chain's shape after the search
 constexpr int kFirstSpringGain = 3;        // of kObserverGains
 constexpr int kFollowedSteps = 3;          // of Gauss-Newton with each gain before the last ...
 constexpr int kGaussNewtonSteps = 15;      // ... and with that one
@@ -30,7 +32,8 @@ constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so 
 
 // Parts of the time at which stages are done, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.45, kCommon = 0.5, kFollowed = 0.7, kSprings = 0.8;
-constexpr double kChainCommon = 0.8;  // of a chain, which goes on with free motions
+constexpr double kChainCommon = 0.7,
+                 kSearched = 0.85;  // of a chain, which goes on with free motions
 
 }  // namespace
 
@@ -45,7 +48,7 @@ Parameters FullFit::SpringParameters() const {
 }
 
 SpringMassSystem FullFit::CurrentSystem() const {
-  if (state_.stage > Stage::kSearch) return SpringParameters().Apply(state_.x);
+  if (state_.stage > Stage::kDescend) return SpringParameters().Apply(state_.x);
   return (state_.stage == Stage::kChoose ? choice_.Best() : model_).System(first());
 }
 
@@ -107,6 +110,20 @@ void FullFit::StepSearch() {
                         1e3 * search_->best_error());
   model_.factors = search_->BestFactors();
   if (!search_->done()) return;
+  state_.stage = Stage::kDescend;
+  state_.iteration = 0;
+  state_.error = search_->best_error();
+}
+
+void FullFit::StepDescend() {
+  FreeMotionDescent descent{model_.factors, state_.error, false};
+  descent = DescendFreeMotions(model_, model_.Factors(first()).AlongBodyEntries(),
+                               FitEpisodes(data_, kMostSearchRecordings), options_, descent);
+  model_.factors = descent.factors;
+  state_.error = descent.error;
+  status_ =
+      fmt::format("{}, free motions: {:.3f} mm", model_.candidate.Label(), 1e3 * state_.error);
+  if (++state_.iteration < kDescents && !descent.converged) return;
   state_.x = state_.best = Eigen::VectorXd::Zero(SpringParameters().size());
   state_.stage = Stage::kDone;
 }
@@ -238,6 +255,9 @@ bool FullFit::Step() {
     case Stage::kSearch:
       StepSearch();
       return true;
+    case Stage::kDescend:
+      StepDescend();
+      return true;
     case Stage::kGaussNewton:
       StepGaussNewton();
       return true;
@@ -265,7 +285,9 @@ double FullFit::Progress() const {
       }
       return between(kChosen, kCommon, static_cast<double>(state_.gain) / (kLastGain + 1));
     case Stage::kSearch:
-      return between(kChainCommon, 1, search_->Progress());
+      return between(kChainCommon, kSearched, search_->Progress());
+    case Stage::kDescend:
+      return between(kSearched, 1, static_cast<double>(state_.iteration) / kDescents);
     case Stage::kGaussNewton:
       if (state_.gain < kLastGain) {
         return between(kCommon, kFollowed,
@@ -290,7 +312,9 @@ std::string FullFit::Part() const {
     case Stage::kCommon:
       return "common factors";
     case Stage::kSearch:
-      return "free motions";
+      return "search among free motions";
+    case Stage::kDescend:
+      return "descent of free motions";
     case Stage::kGaussNewton:
       return "single springs (Gauss-Newton)";
     case Stage::kAdam:
@@ -308,9 +332,9 @@ std::map<std::string, NpzArray> FullFit::Save() const {
       StoreCounters({static_cast<int>(state_.stage), state_.iteration, state_.slow, state_.gain,
                      static_cast<int>(model_.factors.size()), static_cast<int>(state_.x.size()),
                      static_cast<int>(state_.adam_mean.size())});
-  Eigen::VectorXd scalars(5);
+  Eigen::VectorXd scalars(6);
   scalars << state_.damping, state_.mean_square, state_.rate, state_.best_mean_square,
-      state_.gained_mean_square;
+      state_.gained_mean_square, state_.error;
   arrays["train/scalars"] = StoreVector(scalars);
   arrays["train/factors"] = StoreVector(model_.factors);
   arrays["train/x"] = StoreVector(state_.x);
@@ -328,12 +352,13 @@ void FullFit::Load(const std::map<std::string, NpzArray>& arrays) {
   state_.iteration = counters[1];
   state_.slow = counters[2];
   state_.gain = counters[3];
-  const Eigen::VectorXd scalars = LoadVector(arrays, "scalars", 5);
+  const Eigen::VectorXd scalars = LoadVector(arrays, "scalars", 6);
   state_.damping = scalars[0];
   state_.mean_square = scalars[1];
   state_.rate = scalars[2];
   state_.best_mean_square = scalars[3];
   state_.gained_mean_square = scalars[4];
+  state_.error = scalars[5];
   model_ = choice_.Best();
   model_.factors = LoadVector(arrays, "factors", counters[4]);
   state_.x = LoadVector(arrays, "x", counters[5]);

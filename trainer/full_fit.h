@@ -41,7 +41,7 @@ class FullFit : public Fitter {
   Twin Result() const override;
 
  private:
-  enum class Stage { kChoose, kCommon, kSearch, kGaussNewton, kAdam, kDone };
+  enum class Stage { kChoose, kCommon, kSearch, kDescend, kGaussNewton, kAdam, kDone };
 
   // Everything that the next step depends on, besides data, options and the choice.
   struct State {
@@ -54,6 +54,7 @@ class FullFit : public Fitter {
     double rate = 1;                              // of Adam, relative to its schedule
     double best_mean_square = 0;                  // Adam's best ...
     double gained_mean_square = 0;                // ... when it last gained more than little
+    double error = 0;                             // of a chain's free motions, m
     Eigen::VectorXd best;                         // the x of the best
     Eigen::VectorXd x;                            // common factors, then with the springs' own
     Eigen::VectorXd adam_mean, adam_mean_square;  // of the gradient
@@ -63,6 +64,7 @@ class FullFit : public Fitter {
   void StepCommon();
   void BeginSearch();
   void StepSearch();
+  void StepDescend();
   void StepGaussNewton();
   void StepAdam();
   void BeginGaussNewton(const Eigen::VectorXd& x);

@@ -87,6 +87,14 @@ std::vector<int> Parameters::WholeBodyEntries() const {
   return entries;
 }
 
+std::vector<int> Parameters::AlongBodyEntries() const {
+  std::vector<int> entries;
+  for (int i = 0; i < effect_count(); ++i) {
+    if (effects_.is_of_several(i)) entries.push_back(effects_at_ + i);
+  }
+  return entries;
+}
+
 SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
   SpringMassSystem system = base_;
   for (int e = 0; e < springs_; ++e) {

@@ -44,6 +44,8 @@ class Parameters {
   // The entries of one value for the whole body: not of classes, single springs, or values of
   // effects along the body, and none that does nothing.
   std::vector<int> WholeBodyEntries() const;
+  // The entries of effects' values along the body.
+  std::vector<int> AlongBodyEntries() const;
   // The entry of the ground's friction; -1: none.
   int friction() const { return options_.contact ? kFriction : -1; }
   // The first entry of the effects' values, and how many there are.

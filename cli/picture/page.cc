@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/picture/error_plot.h"
+#include "cli/picture/escape.h"
 #include "cli/picture/film_data.h"
 #include "cli/picture/overlay.h"
 #include "cli/picture/view.h"
@@ -20,29 +21,6 @@ extern const char kFilmScript[];
 namespace {
 
 constexpr std::size_t kMostDrawn = 20;
-
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 // About three digits.
 std::string Millimetres(const std::optional<double>& metres) {

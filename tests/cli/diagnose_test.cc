@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
@@ -30,9 +31,10 @@ class Diagnose : public testing::Test {
     WriteRecording(RecordingOfMotion(twin, 12), held_);
   }
 
-  ProgramResult Run(const std::string& output, const std::string& json) {
-    return RunProgram(
-        {"diagnose", twin_, swing_, "--heldout", held_, "-o", output, "--json", json});
+  ProgramResult Run(const std::string& output, const std::string& json = "") {
+    std::vector<std::string> words = {"diagnose", twin_, swing_, "--heldout", held_, "-o", output};
+    if (!json.empty()) words.insert(words.end(), {"--json", json});
+    return RunProgram(words);
   }
 
   TemporaryFolder folder_;
@@ -79,7 +81,29 @@ TEST_F(Diagnose, NeedsFramesToFitAndOthersToJudgeBy) {
   recording.controllers.resize(2);
   WriteRecording(recording, two);
   EXPECT_TRUE(FailsWith(RunProgram({"diagnose", twin_, two, "-o", output_}),
-                        "2 frames are too few: none is left to judge by"));
+                        "recording two: its points are seen in 1 of the frames to fit, 8 are the "
+                        "fewest"));
+}
+
+TEST_F(Diagnose, IsNotJudgedByFramesInWhichNothingIsSeen) {
+  Recording recording = RecordingOfMotion(SmallTwin(1), 12);
+  for (int frame = 3; frame < 12; ++frame) {
+    recording.points[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  WriteRecording(recording, held_);
+  EXPECT_TRUE(FailsWith(Run(output_),
+                        ": its points are seen in 2 of the frames to judge by, 5 are the fewest"));
+}
+
+TEST_F(Diagnose, OverwritesNothingUnasked) {
+  for (const char* name : {"report.html", "small.twin.npz"}) {
+    const std::string folder = folder_.File(std::string("with_") + name);
+    std::filesystem::create_directory(folder);
+    const std::string mine = folder + "/" + name;
+    WriteFileAtomically(mine, "mine");
+    EXPECT_TRUE(FailsWith(Run(folder), mine + ": exists; --force overwrites"));
+    EXPECT_EQ(ReadFile(mine), "mine");
+  }
 }
 
 // A twin that was trained on the motion of a body that weighs more on one side.

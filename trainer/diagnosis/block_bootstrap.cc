@@ -7,6 +7,11 @@
 #include <random>
 
 namespace physpring {
+namespace {
+
+constexpr std::size_t kFewestBlocks = 4;  // of one or two all draws are much alike
+
+}  // namespace
 
 std::vector<double> Difference(const std::vector<double>& p, const std::vector<double>& q) {
   std::vector<double> difference;
@@ -21,7 +26,8 @@ BootstrapResult BlockBootstrap(const std::vector<double>& difference, int block,
   BootstrapResult result;
   const std::size_t count = difference.size();
   if (count == 0 || draws < 1) return result;
-  const std::size_t length = std::clamp<std::size_t>(static_cast<std::size_t>(block), 1, count);
+  const std::size_t longest = std::max<std::size_t>(1, count / kFewestBlocks);
+  const std::size_t length = std::clamp<std::size_t>(static_cast<std::size_t>(block), 1, longest);
   const auto mean = [&](double sum) { return sum / static_cast<double>(count); };
   result.mean = mean(std::accumulate(difference.begin(), difference.end(), 0.0));
   std::mt19937_64 generator(seed);

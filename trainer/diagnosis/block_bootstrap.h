@@ -20,7 +20,8 @@ struct BootstrapResult {
 // Frame by frame, p - q; both of the same frames.
 std::vector<double> Difference(const std::vector<double>& p, const std::vector<double>& q);
 
-// `difference`: error of the first model minus that of the second, of each frame.
+// `difference`: error of the first model minus that of the second, of each frame. `block`: frames,
+// at most a quarter of all.
 BootstrapResult BlockBootstrap(const std::vector<double>& difference, int block, int draws,
                                std::uint64_t seed);
 

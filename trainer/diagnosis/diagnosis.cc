@@ -19,7 +19,8 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-constexpr double kUnexplained = 2.5;  // times the noise floor: something is left
+constexpr double kUnexplained = 2.5;                 // times the noise floor: something is left
+constexpr int kFewestFitted = 8, kFewestJudged = 5;  // frames in which points are seen
 // Of the work, as the journal tells it: the loop over effects, then the residual forces.
 constexpr WorkShare kLoopShare{0, 0.97}, kResidualShare{0.97, 1};
 
@@ -45,19 +46,25 @@ std::vector<SplitRecording> SplitAll(const std::vector<Recording>& recordings,
   return splits;
 }
 
-bool HasFrames(const std::vector<SplitRecording>& splits, Use use) {
-  return std::any_of(splits.begin(), splits.end(),
-                     [use](const SplitRecording& split) { return split.last(use) > 0; });
-}
-
 // There must be frames to fit effects to, and others to judge them by.
 void ExpectSplit(const std::vector<SplitRecording>& splits) {
-  constexpr std::pair<Use, const char*> kWanted[] = {{Use::kFit, "fit"}, {Use::kHeld, "judge by"}};
-  for (const auto& [use, purpose] : kWanted) {
-    if (HasFrames(splits, use)) continue;
-    const Recording& recording = *splits[0].recording;
-    throw Error(fmt::format("recording {}: {} frames are too few: none is left to {}",
-                            recording.name, recording.frame_count(), purpose));
+  struct Wanted {
+    Use use;
+    int fewest;
+    const char* purpose;
+  };
+  for (const Wanted& wanted :
+       {Wanted{Use::kFit, kFewestFitted, "fit"}, Wanted{Use::kHeld, kFewestJudged, "judge by"}}) {
+    int seen = 0;
+    std::string name;  // of the first recording with this use
+    for (const SplitRecording& split : splits) {
+      seen += split.seen(wanted.use);
+      if (name.empty() && split.last(wanted.use) > 0) name = split.recording->name;
+    }
+    if (seen >= wanted.fewest) continue;
+    throw Error(fmt::format(
+        "recording {}: its points are seen in {} of the frames to {}, {} are the fewest",
+        name.empty() ? splits[0].recording->name : name, seen, wanted.purpose, wanted.fewest));
   }
 }
 

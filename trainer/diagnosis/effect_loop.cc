@@ -28,7 +28,7 @@ constexpr double kRival = 1.25;
 
 // Shares of the loop: refits without an effect; and of a round the search, with the springs' refit,
 // and the training.
-constexpr double kCommonPart = 0.2, kSearchPart = 0.5, kTrainingPart = 0.65;
+constexpr double kCommonPart = 0.2, kFollowPart = 0.45, kSearchPart = 0.5, kTrainingPart = 0.65;
 
 std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMassSystem& body) {
   const BodyTraits traits = {recording.ground.has_value(), IsSolid(body), body.order.size() > 0};
@@ -73,9 +73,12 @@ void EffectLoop::Offer(const EffectFit& fit) {
 bool EffectLoop::Round(int round) {
   const WorkShare stage = ShareOf(round);
   EffectSearchResult search;
-  if (!IsExplained(round)) search = Search(stage.Part(0, kSearchPart));
+  if (!IsExplained(round)) search = Search(stage.Part(0, kFollowPart));
   const bool found = !search.fits.empty();
   const std::size_t best = found ? ChooseSimplest(search.fits, block_, options_.seed) : 0;
+  if (found && search.fits[best].track.held > kExplained * noise_floor_) {
+    FollowAgain(fitting_, stage.Part(kFollowPart, kSearchPart), &search.fits[best]);
+  }
   rankings_.push_back(Rank(search, best));
   const EffectFit chosen = found ? search.fits[best] : common_;
   // single springs that are not needed predict other motions worse

@@ -38,6 +38,8 @@ constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
 constexpr std::array<Cut, 2> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 6, 4, 3}}};
 constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.1, 2, 10, 2}, {0.05, 3, 6, 2}, {0, 12, 6, 2}}};
+constexpr std::array<Cut, 4> kAgainCuts = {
+    {{0.2, 4, 1, 1}, {0.1, 4, 1, 1}, {0.05, 4, 1, 1}, {0, 12, 1, 1}}};
 
 // Under an observer, a misfit so many times the least one is hopeless.
 constexpr double kHopeless = 4;
@@ -213,6 +215,13 @@ EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodie
   std::map<std::string, int> seen;
   std::erase_if(result.fits, [&](const EffectFit& fit) { return seen[NewEffect(fit)]++ > 0; });
   return result;
+}
+
+void FollowAgain(const EffectFitting& fitting, const WorkShare& stage, EffectFit* fit) {
+  std::vector<EffectFit> again = {*fit};
+  Halve(fitting, kAgainCuts, stage, " once more", &again);
+  if (again.empty() || again[0].misfit >= fit->misfit || !fitting.Judge(&again[0])) return;
+  *fit = std::move(again[0]);
 }
 
 std::size_t ChooseSimplest(const std::vector<EffectFit>& fits, int block, std::uint64_t seed) {

@@ -44,6 +44,10 @@ struct EffectSearchResult {
 EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
+// Fits it once more from where it is, under an observer and then without one: what is far from its
+// least there may come nearer to it. It stays as it is where that fits worse.
+void FollowAgain(const EffectFitting& fitting, const WorkShare& stage, EffectFit* fit);
+
 // Whether the fit's new effect has so many parameters that it takes the shape of others. It does
 // not compete with them.
 bool IsFreeForm(const EffectFit& fit);

@@ -57,6 +57,14 @@ int SplitRecording::last(Use wanted) const {
   return static_cast<int>(use.rend() - found);
 }
 
+int SplitRecording::seen(Use wanted) const {
+  int count = 0;
+  for (std::size_t frame = 0; frame < use.size(); ++frame) {
+    count += use[frame] == wanted && !recording->points[frame].array().isNaN().all() ? 1 : 0;
+  }
+  return count;
+}
+
 SplitRecording UseAll(const Recording& recording, Use use) {
   SplitRecording split{&recording, std::vector<Use>(recording.points.size(), use)};
   split.use[0] = Use::kNone;

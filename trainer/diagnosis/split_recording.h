@@ -16,6 +16,7 @@ struct SplitRecording {
   std::vector<Use> use;
 
   int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
+  int seen(Use wanted) const;  // frames of that use in which a point is seen
 };
 
 // All frames for one use.

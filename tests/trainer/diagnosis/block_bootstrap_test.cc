@@ -40,6 +40,12 @@ TEST(BlockBootstrap, SeesAGain) {
   EXPECT_GT(result.high, result.mean);
 }
 
+TEST(BlockBootstrap, IsUnsureOfAFewFrames) {
+  const BootstrapResult result = BlockBootstrap({-1, 1, 2, 3, 2, 1}, 10, 1000, 1);
+  EXPECT_LT(result.low, result.mean - 0.5);  // one block of all would have no width
+  EXPECT_GT(result.high, result.mean + 0.5);
+}
+
 TEST(BlockBootstrap, SaysNothingWithoutFrames) { EXPECT_EQ(BlockBootstrap({}, 10, 1000, 1).p, 1); }
 
 }  // namespace

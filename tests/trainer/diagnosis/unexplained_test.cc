@@ -12,6 +12,7 @@ namespace {
 // Three nodes, ten steps, and forces on node 1 alone.
 ResidualPattern OnNode1(const Points& force) {
   ResidualPattern pattern;
+  pattern.root_mean_square = force.norm();
   pattern.node.resize(3, 3);
   pattern.node << 0, 1, 2, 0, 0, 0, 0, 0, 5;
   pattern.node_force = Eigen::Vector3d(0, force.norm() / std::sqrt(10.0), 0);
@@ -25,6 +26,7 @@ TEST(Unexplained, IsWhereAndWhenTheMissingForceIsLargest) {
   force.row(0).setConstant(0.1);
   for (int t : {4, 5, 6}) force.col(t) = Eigen::Vector3d(0, 0, -2);
   const Unexplained left = FindUnexplained(OnNode1(force), 0.003, 20);
+  EXPECT_TRUE(left.located);
   EXPECT_EQ(left.track, 0.003);
   EXPECT_EQ(left.particle, 1);
   EXPECT_EQ(left.position, Eigen::Vector3d(1, 0, 0));
@@ -45,10 +47,10 @@ TEST(Unexplained, SaysThatADirectionTurns) {
   EXPECT_NEAR(left.steadiness, 0, 1e-12);
 }
 
-TEST(Unexplained, StandsStillWithoutForces) {
+TEST(Unexplained, IsNowhereWithoutForces) {
   const Unexplained left = FindUnexplained(OnNode1(Points::Zero(3, 10)), 0.003, 10);
-  EXPECT_EQ(left.steadiness, 0);
-  EXPECT_EQ(left.direction, Eigen::Vector3d(0, 0, 0));
+  EXPECT_FALSE(left.located);
+  EXPECT_EQ(left.track, 0.003);
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/free_motion_error.h"
+
+#include <limits>
+
+#include "trainer/fit_model.h"
+
+namespace physpring {
+
+FreeMotionError::FreeMotionError(const ChosenModel& model, std::vector<Episode> episodes,
+                                 const TrainOptions& options)
+    : factors_(model.Factors(*episodes.at(0).recording)),
+      follow_(FollowOptions(*episodes[0].recording, model.candidate, options)),
+      problem_(factors_, episodes, follow_) {
+  for (const Episode& episode : episodes) judged_.push_back({episode, episode.recording});
+}
+
+double FreeMotionError::operator()(const Eigen::VectorXd& factors) const {
+  const SpringMassSystem system = factors_.Apply(factors);
+  RolloutOptions rollout = follow_.rollout;
+  rollout.substeps = problem_.Substeps(system);
+  return rollout.substeps == 0 ? std::numeric_limits<double>::infinity()
+                               : GeometricTrackError(system, judged_, rollout);
+}
+
+}  // namespace physpring
