@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -50,6 +51,21 @@ void ExpectNotFitted(const Recording& judged, const std::string& path,
     if (recording.hash != judged.hash) continue;
     throw Error(fmt::format("{}: is among the recordings to fit, too, as {}; it cannot judge them",
                             path, recording.name));
+  }
+}
+
+// A recording may declare another mass than the twin has; what it weighs shows in its motion alone.
+void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
+  constexpr double kAlike = 0.01;  // of the twin's
+  const double mass = twin.levels[0].system.mass.sum();
+  for (const auto* recordings : {&chosen.fit, &chosen.held_out}) {
+    for (const Recording& recording : *recordings) {
+      if (std::abs(recording.mass - mass) <= kAlike * mass) continue;
+      fmt::print(stderr,
+                 "warning: recording {}: says that the object weighs {:.4g} kg; the twin's "
+                 "{:.4g} kg are taken\n",
+                 recording.name, recording.mass, mass);
+    }
   }
 }
 
@@ -139,6 +155,7 @@ void Run(const DiagnoseArguments& arguments) {
                       FormatDiagnosisPage(diagnosis, chosen.fit[0], "Diagnosis of " + name));
   WriteTwin(diagnosis.twin, outputs.twin);
   checkpoint.Finish();
+  WarnOfMass(twin, chosen);
   fmt::print("{}", FormatDiagnosisText(diagnosis));
 }
 

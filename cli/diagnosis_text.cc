@@ -129,9 +129,12 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
                       candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
                       DescribeGain(candidate.gain), candidate.gain.p);
     }
-    if (i >= diagnosis.effects.size()) continue;
-    text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
-                        DescribeParameters(diagnosis, i));
+    if (i < diagnosis.effects.size()) {
+      text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
+                          DescribeParameters(diagnosis, i));
+    } else if (!diagnosis.rankings[i].empty()) {
+      text += "added: none, since none surely takes enough of the error above the noise\n";
+    }
   }
   const std::string confounded = DescribeConfounded(diagnosis);
   if (!confounded.empty()) text += confounded + "\n";

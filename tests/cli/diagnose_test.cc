@@ -95,6 +95,18 @@ TEST_F(Diagnose, IsNotJudgedByFramesInWhichNothingIsSeen) {
                         ": its points are seen in 2 of the frames to judge by, 5 are the fewest"));
 }
 
+TEST_F(Diagnose, WarnsOfAnotherMass) {
+  Recording recording = RecordingOfMotion(SmallTwin(1), 12);
+  EXPECT_EQ(Run(output_).errors.find("weighs"), std::string::npos);
+  recording.mass *= 2;
+  WriteRecording(recording, held_);
+  const ProgramResult result = Run(folder_.File("other"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.errors.find("warning: recording held: says that the object weighs "),
+            std::string::npos)
+      << result.errors;
+}
+
 TEST_F(Diagnose, OverwritesNothingUnasked) {
   for (const char* name : {"report.html", "small.twin.npz"}) {
     const std::string folder = folder_.File(std::string("with_") + name);
