@@ -77,7 +77,11 @@ bool EffectLoop::Round(int round) {
   const bool found = !search.fits.empty();
   const std::size_t best = found ? ChooseSimplest(search.fits, block_, options_.seed) : 0;
   if (found && search.fits[best].track.held > kExplained * noise_floor_) {
-    FollowAgain(fitting_, stage.Part(kFollowPart, kSearchPart), &search.fits[best]);
+    const WorkShare share = stage.Part(kFollowPart, kSearchPart);
+    // first what it is compared with: what that gains is no merit of the effect
+    FollowAgain(fitting_, share.Part(0, 0.5), &common_);
+    if (round == 0) Offer(common_);
+    FollowAgain(fitting_, share.Part(0.5, 1), &search.fits[best]);
   }
   rankings_.push_back(Rank(search, best));
   const EffectFit chosen = found ? search.fits[best] : common_;
