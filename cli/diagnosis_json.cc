@@ -61,18 +61,14 @@ Json Vectors(const Points& vectors) {
 Json UnexplainedJson(const Diagnosis& diagnosis) {
   if (!diagnosis.unexplained) return nullptr;
   const Unexplained& left = *diagnosis.unexplained;
-  if (!left.located) {
-    return {{"track", left.track},  {"particle", nullptr}, {"position", nullptr},
-            {"from_s", nullptr},    {"to_s", nullptr},     {"direction", nullptr},
-            {"steadiness", nullptr}};
-  }
+  const auto located = [&](const Json& value) { return left.located ? value : Json(nullptr); };
   return {{"track", left.track},
-          {"particle", left.particle},
-          {"position", Direction(left.position)},
-          {"from_s", left.first_time},
-          {"to_s", left.last_time},
-          {"direction", Direction(left.direction)},
-          {"steadiness", left.steadiness}};
+          {"particle", located(left.particle)},
+          {"position", located(Direction(left.position))},
+          {"from_s", located(left.first_time)},
+          {"to_s", located(left.last_time)},
+          {"direction", located(Direction(left.direction))},
+          {"steadiness", located(left.steadiness)}};
 }
 
 Json RankingJson(const EffectRanking& ranking) {

@@ -32,8 +32,7 @@ constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so 
 
 // Parts of the time at which stages are done, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.45, kCommon = 0.5, kFollowed = 0.7, kSprings = 0.8;
-constexpr double kChainCommon = 0.7,
-                 kSearched = 0.85;  // of a chain, which goes on with free motions
+constexpr double kChainCommon = 0.7, kSearched = 0.85;  // of a chain: goes on with free motions
 
 }  // namespace
 

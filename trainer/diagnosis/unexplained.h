@@ -9,12 +9,14 @@
 namespace physpring {
 
 struct Unexplained {
-  double track = 0;          // error left above the noise floor, m
-  bool located = false;      // whether a force is missing on what was fitted; else no more is known
-  int particle = 0;          // where the missing force is largest over time ...
-  Eigen::Vector3d position;  // ... its place in the reference configuration, m
+  double track = 0;      // error left above the noise floor, m
+  bool located = false;  // whether a force is missing on what was fitted; else no more is known
+  int particle = 0;      // where the missing force is largest over time ...
+  // ... and its place in the reference configuration, m
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
   double first_time = 0, last_time = 0;  // the shortest time with half of its square, s
-  Eigen::Vector3d direction;             // of the sum over all nodes, in the mean of that time
+  // Of the sum over all nodes, in the mean of that time.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   double steadiness = 0;  // of that direction: 1 it stays, 0 it turns to all sides alike
 };
 
