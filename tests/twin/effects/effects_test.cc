@@ -31,7 +31,7 @@ const std::map<std::string, Case>& Cases() {
       {"stiffening", {{30}, kSmooth}},
       {"tension_only", {{0.7}, kKinked}},
       {"yield", {{2e-3, 0.1, 1e-3}, kKinked}},
-      {"dry_friction", {{0.01}, kKinked}},
+      {"dry_friction", {{0.01, 30}, kKinked}},
       {"viscoelastic", {{0.5, 0.02}, kSmooth}},
       {"bending", {{1e-3}, kSmooth}},
       {"bending_damping", {{1e-5}, kSmooth}},

@@ -38,10 +38,10 @@ std::vector<KnownEffect> KnownEffects() {
          *p = std::clamp(*p, seen - y, seen + y);
          return -s.stiffness * *p;
        }},
-      {{"dry_friction", Eigen::VectorXd::Constant(1, 0.01)},
+      {{"dry_friction", Eigen::Vector2d(0.01, 30)},
        [](const Moment& s, double, double h, double* z) {
          const double slip = 0.01 * s.rest_length;
-         *z = std::clamp(*z + h * s.rate, -slip, slip);
+         *z = std::clamp((*z + h * s.rate) * std::exp(-30 * h), -slip, slip);
          return s.stiffness * *z;
        }},
       {{"stiffness_drift", Eigen::VectorXd::Constant(1, 1.5)},
