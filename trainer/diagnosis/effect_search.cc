@@ -19,7 +19,8 @@ constexpr std::size_t kEarlyBodies = 2;    // that effects are tried on from the
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
 constexpr int kSimplestDraws = 1000;
 constexpr double kEarlyShare = 0.4, kTraceShare = 0.5;  // of the work of a search, until then
-constexpr double kStrong = 0.7;  // of the misfit without an effect, what a strong law leaves
+// of the misfit that the body alone has after as many steps, what a strong law leaves
+constexpr double kStrong = 0.7;
 constexpr std::size_t kMostStrong = 4;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
@@ -111,7 +112,8 @@ EffectFit With(const EffectFit& fit, const EffectTrace& trace) {
   return with;
 }
 
-// Laws of the springs change bodies so much that these begin anew.
+// Laws of the springs change bodies so much that these begin anew; so does the body alone that
+// they are compared with.
 std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<EffectFit> fits;
@@ -122,15 +124,17 @@ std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<E
     EffectFit fit = fitting.Begin(body, values);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   };
+  std::vector<EffectFit> alone = {fitting.Begin(first.body, first.start)};
+  Halve(fitting, kLawCuts, stage.Part(0, 0.03), kWithoutEffect, &alone);
   for (const Effect* effect : effects) {
     for (const Eigen::VectorXd& start : effect->Starts(fitting.Model(first).Apply(first.x))) {
       if (effect->MakeTension(start)) add(first.body, {effect->name(), start});
     }
   }
-  Halve(fitting, kLawCuts, stage.Part(0, 0.5), kWithLaw, &fits);
+  Halve(fitting, kLawCuts, stage.Part(0.03, 0.5), kWithLaw, &fits);
   std::vector<EffectValues> strong;
   for (const EffectFit& fit : fits) {
-    if (fit.misfit < kStrong * first.misfit) strong.push_back(fit.start.back());
+    if (fit.misfit < kStrong * alone.front().misfit) strong.push_back(fit.start.back());
   }
   if (strong.empty()) {
     Keep(fits.size(), 1, &fits);
