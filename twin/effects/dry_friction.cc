@@ -78,10 +78,11 @@ class DryFriction : public Effect {
     if (values[0] != 0) bound->stiffness *= 2;
   }
   EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const override {
-    EffectMjcf mjcf{EffectMjcf::Carrier::kTendon,
-                    {},
-                    {},
-                    "MuJoCo's friction loss slips at once; here a spring gives way first"};
+    EffectMjcf mjcf{
+        EffectMjcf::Carrier::kTendon,
+        {},
+        {},
+        "MuJoCo's friction loss has no spring that gives way first; it creeps in its own way"};
     for (int e = 0; e < system.spring_count(); ++e) {
       const double force = values[0] * system.stiffness[e] * system.rest_length[e];
       mjcf.tendon.push_back({{"frictionloss", fmt::format("{}", force)}});
