@@ -35,14 +35,9 @@ std::optional<EffectFit> TrainAnew(const EffectFitting& fitting, const WorkShare
   }
   TrainOptions options;
   options.effects = like.system.effects;
-  if (const int neighbours = fitting.bodies()[like.body].neighbours; neighbours > 0) {
-    options.neighbours = {neighbours};
-  }
-  options.controller_velocity = like.controller_velocity;
-  options.cone = like.system.contact.cone;
   options.threads = fitting.threads();
   PieceKey key("training");
-  key.Add(options.effects).Add(static_cast<double>(like.body));
+  key.Add(options.effects);
   try {
     FullFit training(std::move(data), options);
     fitting.journal().Finish(key, share, "training anew with " + options.effects.back().name,

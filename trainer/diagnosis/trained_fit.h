@@ -15,9 +15,8 @@ namespace physpring {
 std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitRecording>& recordings,
                                    const EffectFit& like);
 
-// The training on the frames to fit of a twin that has the effects of `like`, its neighbour count,
-// its treatment of the controllers' velocity and its cone of friction; nothing if the motion
-// diverges.
+// The training on the frames to fit, as `physpring train --effects` does, of a twin that has the
+// effects of `like`; nothing if the motion diverges.
 std::optional<EffectFit> TrainAnew(const EffectFitting& fitting, const WorkShare& share,
                                    const EffectFit& like);
 
