@@ -81,16 +81,13 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
     SpringMassSystem system = StartSystem(shaped, candidate, kStart);
     system.mass = own.base.mass;
     system.effects.clear();
-    const auto known = std::find_if(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
+    const bool known = std::any_of(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
       return body.controller_velocity == candidate.controller_velocity &&
              body.base.springs == system.springs;
     });
-    if (known != bodies.end()) {
-      known->neighbours = candidate.neighbours;
-      continue;
+    if (!known) {
+      bodies.push_back({system, candidate.controller_velocity, false, candidate.Label()});
     }
-    bodies.push_back(
-        {system, candidate.controller_velocity, false, candidate.Label(), candidate.neighbours});
   }
   return bodies;
 }

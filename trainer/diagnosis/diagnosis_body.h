@@ -24,7 +24,6 @@ struct DiagnosisBody {
   bool controller_velocity = true;
   bool trusted = false;  // its own parameters hardly move
   std::string label;
-  int neighbours = 0;  // of an inner particle, about; 0: as many as the twin's training chose
 };
 
 // Whether a system's particles are joined to the next along a rod only, which bends by an effect.
