@@ -113,7 +113,7 @@ EffectFit With(const EffectFit& fit, const EffectTrace& trace) {
 }
 
 // Laws of the springs change bodies so much that these begin anew; so does the body alone that
-// they are compared with.
+// they are compared with, whose steps the journal has already.
 std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
                                const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<EffectFit> fits;
