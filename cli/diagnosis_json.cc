@@ -120,6 +120,7 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
       {"before", Pair(diagnosis.before)},
       {"effects", EffectList(diagnosis)},
       {"after", Pair(diagnosis.after)},
+      {"all_frames", diagnosis.all_frames ? Json(*diagnosis.all_frames) : Json(nullptr)},
       {"gain",
        {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
       {"candidates", RankingJson(diagnosis.rankings.at(0))},

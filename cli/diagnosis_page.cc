@@ -93,9 +93,13 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
   page += fmt::format(
       "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
       "<tr><td>before</td><td>{}</td><td>{}</td></tr><tr><td>after</td><td>{}</td><td>{}</td></tr>"
-      "<tr><td>noise floor</td><td colspan='2'>{}</td></tr></table><p>{}.</p>",
+      "{}<tr><td>noise floor</td><td colspan='2'>{}</td></tr></table><p>{}.</p>",
       InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held),
       InMillimetres(diagnosis.after.fit), InMillimetres(diagnosis.after.held),
+      diagnosis.all_frames
+          ? fmt::format("<tr><td>twin, fitted to all frames</td><td colspan='2'>{}</td></tr>",
+                        InMillimetres(*diagnosis.all_frames))
+          : "",
       InMillimetres(diagnosis.noise_floor), DescribeGain(diagnosis.gain));
   page += TrackPlot(diagnosis);
   page += "<h2>Effects added</h2><ul>";

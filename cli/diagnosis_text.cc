@@ -140,6 +140,10 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   if (!confounded.empty()) text += confounded + "\n";
   text += fmt::format("after: fit {}, held out {}\n", InMillimetres(diagnosis.after.fit),
                       InMillimetres(diagnosis.after.held));
+  if (diagnosis.all_frames) {
+    text += fmt::format("twin: fitted to the held-out frames, too, all {}\n",
+                        InMillimetres(*diagnosis.all_frames));
+  }
   return text + DescribeResidual(diagnosis) + "\n" + Verdict(diagnosis) + "\n";
 }
 

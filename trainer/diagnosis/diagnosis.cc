@@ -9,6 +9,7 @@
 #include "trainer/diagnosis/effect_loop.h"
 #include "trainer/diagnosis/effect_problem.h"
 #include "trainer/diagnosis/fit_residual.h"
+#include "trainer/diagnosis/last_fit.h"
 #include "trainer/diagnosis/noise_floor.h"
 #include "trainer/diagnosis/trained_fit.h"
 #include "twin/error.h"
@@ -21,8 +22,8 @@ using Use = SplitRecording::Use;
 
 constexpr double kUnexplained = 2.5;                 // times the noise floor: something is left
 constexpr int kFewestFitted = 8, kFewestJudged = 5;  // frames in which points are seen
-// Of the work, as the journal tells it: the loop over effects, then the residual forces.
-constexpr WorkShare kLoopShare{0, 0.97}, kResidualShare{0.97, 1};
+// Of the work, as the journal tells it: the loop over effects, the residual forces, the last fit.
+constexpr WorkShare kLoopShare{0, 0.94}, kResidualShare{0.94, 0.96}, kLastShare{0.96, 1};
 
 // What the twin says of its training on the recording; end() if it was not trained on it.
 template <class List>  // std::vector<TrainedOn>, const or not
@@ -91,6 +92,12 @@ std::ptrdiff_t EffectValueCount(const std::vector<EffectValues>& effects) {
   return count;
 }
 
+// The fit's effects behind those that were known.
+std::vector<EffectValues> NewEffects(const EffectFit& fit, const std::vector<EffectValues>& known) {
+  const std::vector<EffectValues>& all = fit.system.effects;
+  return {all.begin() + static_cast<long>(known.size()), all.end()};
+}
+
 // The twin with the fit's system at level 0, and the new effects at all levels.
 Twin TwinWith(Twin twin, const EffectFit& fit, const std::vector<EffectValues>& effects,
               const std::vector<SplitRecording>& splits) {
@@ -157,8 +164,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   result.after = accepted.track;
   result.after_track = accepted.held;
   result.gain = loop.Gain(result.before_track, result.after_track);
-  result.effects.assign(accepted.system.effects.begin() + static_cast<long>(known.size()),
-                        accepted.system.effects.end());
+  result.effects = NewEffects(accepted, known);
   if (!result.effects.empty()) {
     result.certainty = CertaintyOf(fitting, loop.common());
     result.certainty.erase(result.certainty.begin(),
@@ -173,7 +179,16 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     result.unexplained = FindUnexplained(
         result.residual_after, accepted.track.held - result.noise_floor, recordings[0].fps);
   }
-  result.twin = TwinWith(twin, accepted, result.effects, splits);
+  std::optional<EffectFit> last;
+  if (held_out.empty() && !result.effects.empty()) {
+    last = FitAllFrames(fitting, kLastShare, accepted);
+  }
+  if (last) {
+    result.all_frames = last->track.fit;
+    result.effects = NewEffects(*last, known);
+    for (SplitRecording& split : splits) split = FitHeldOut(split);
+  }
+  result.twin = TwinWith(twin, last ? *last : accepted, result.effects, splits);
   return result;
 }
 

@@ -14,6 +14,8 @@
 //   7  repeat from 3, until nothing is accepted; where another effect was about as good,
 //               beside that, too: what is added next tells which of them it is
 //   8  tell    the forces that are still missing, before and after (residual_force.h)
+//   9  end     where frames were held out, and no recordings: what was found is fitted to these
+//               frames, too (last_fit.h)
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_H_
 
@@ -73,7 +75,10 @@ struct Diagnosis {
   FrameTrack before_track, after_track;  // on held-out frames
   // Forces that the model lacks on the first recording, without and with the effects.
   ResidualPattern residual_before, residual_after;
-  Twin twin;  // refitted, with the effects
+  // Refitted, with the effects; and its track error on all frames where step 9 was made: all else
+  // but the values of `effects` is of the fit before that.
+  Twin twin;
+  std::optional<double> all_frames;
 };
 
 // `held_out` may be empty: then the future frames of the recordings are held out, or blocks of

@@ -159,10 +159,11 @@ EffectProblem EffectFitting::MakeProblem(EffectModel model, const DiagnosisBody&
   return EffectProblem(std::move(model), gain > 0 ? followed_ : recordings_, options);
 }
 
-bool EffectFitting::DescendOne(double gain, int steps, EffectFit* fit) const {
+bool EffectFitting::DescendOne(double gain, int steps, int threads, EffectFit* fit) const {
   EffectProblem problem = Problem(*fit, gain);
   LevenbergMarquardtOptions options;
   options.difference = difference();
+  options.threads = threads;
   LevenbergMarquardtState state;
   state.x = fit->x;
   state.damping = fit->damping;
@@ -185,7 +186,8 @@ bool EffectFitting::DescendOne(double gain, int steps, EffectFit* fit) const {
 }
 
 void EffectFitting::Descend(double gain, int steps, std::vector<EffectFit>* fits) const {
-  ForEach(threads_, fits, [&](EffectFit* fit) { return DescendOne(gain, steps, fit); });
+  const int each = std::max(1, threads_ / std::max(1, static_cast<int>(fits->size())));
+  ForEach(threads_, fits, [&](EffectFit* fit) { return DescendOne(gain, steps, each, fit); });
 }
 
 bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,

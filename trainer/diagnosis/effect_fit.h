@@ -82,7 +82,7 @@ class EffectFitting {
   bool Predict(EffectProblem* problem, const Eigen::VectorXd& x, EffectFit* fit) const;
   EffectProblem MakeProblem(EffectModel model, const DiagnosisBody& body, double gain,
                             int threads) const;
-  bool DescendOne(double gain, int steps, EffectFit* fit) const;
+  bool DescendOne(double gain, int steps, int threads, EffectFit* fit) const;
 
   std::vector<DiagnosisBody> bodies_;
   std::vector<SplitRecording> recordings_;

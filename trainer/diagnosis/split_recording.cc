@@ -106,6 +106,11 @@ int LeaveOutRest(double noise, SplitRecording* split) {
   return taken;
 }
 
+SplitRecording FitHeldOut(SplitRecording split) {
+  std::replace(split.use.begin(), split.use.end(), Use::kHeld, Use::kFit);
+  return split;
+}
+
 Recording OnlyFitFrames(const SplitRecording& split) {
   Recording part = *split.recording;
   for (std::size_t frame = 1; frame < split.use.size(); ++frame) {

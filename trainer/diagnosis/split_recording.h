@@ -32,6 +32,9 @@ SplitRecording HoldOutFrames(const Recording& recording);
 // twice the measurements' noise [m] (noise_floor.h). Returns how many frames it took.
 int LeaveOutRest(double noise, SplitRecording* split);
 
+// The frames that are held out to fit, too.
+SplitRecording FitHeldOut(SplitRecording split);
+
 // A copy of the recording in which, after frame 0, only frames to fit are seen.
 Recording OnlyFitFrames(const SplitRecording& split);
 

@@ -79,8 +79,10 @@ void MoveByMujoco(const SpringMassSystem& system, const Eigen::Vector3d& gravity
   }
 }
 
-// The diagnosis of a twin that was trained on the first of two motions.
-Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity) {
+// The diagnosis of a twin that was trained on the first of two motions, judged by the other or by
+// frames of the same.
+enum class JudgedBy { kOther, kFrames };
+Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity, JudgedBy judge = JudgedBy::kOther) {
   Recording fit = HungSheet(0), other = HungSheet(1);
   const SpringMassSystem system = SheetSystem(fit);
   MoveByMujoco(system, gravity, &fit);
@@ -95,13 +97,17 @@ Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity) {
   DiagnosisOptions options;
   options.threads = 2;
   options.most_effects = 1;
+  if (judge == JudgedBy::kFrames) return Diagnose(twin, {fit}, {}, options);
   return Diagnose(twin, {fit}, {other}, options);
+}
+
+Eigen::Vector3d TiltedGravity(double tilt) {
+  return 9.81 * Eigen::Vector3d(0, std::sin(tilt), -std::cos(tilt));
 }
 
 TEST(Diagnosis, FindsTiltedGravity) {
   constexpr double kTilt = 0.12;  // rad, about x
-  const Diagnosis diagnosis =
-      DiagnoseSheet(9.81 * Eigen::Vector3d(0, std::sin(kTilt), -std::cos(kTilt)));
+  const Diagnosis diagnosis = DiagnoseSheet(TiltedGravity(kTilt));
   ASSERT_EQ(diagnosis.effects.size(), 1U);
   EXPECT_EQ(diagnosis.effects[0].name, "gravity_direction");
   // 800 points with noise of 0.3 mm leave less than a tenth of the angle open
@@ -115,11 +121,23 @@ TEST(Diagnosis, FindsTiltedGravity) {
   EXPECT_LT(diagnosis.after.held, 1.5 * diagnosis.noise_floor);
   EXPECT_GT(diagnosis.before.held, 3 * diagnosis.after.held);
   EXPECT_FALSE(diagnosis.unexplained);
+  EXPECT_FALSE(diagnosis.all_frames);
   // the missing force says so, too
   const Eigen::Vector3d& missing = diagnosis.residual_before.acceleration;
   EXPECT_GT(missing[1], 3 * std::abs(missing[0]));
   EXPECT_LT(diagnosis.residual_after.root_mean_square,
             0.5 * diagnosis.residual_before.root_mean_square);
+}
+
+TEST(Diagnosis, EndsWithAFitToAllFrames) {
+  constexpr double kTilt = 0.12;
+  const Diagnosis diagnosis = DiagnoseSheet(TiltedGravity(kTilt), JudgedBy::kFrames);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_NEAR(diagnosis.effects[0].values[0], kTilt, 0.1 * kTilt);
+  ASSERT_TRUE(diagnosis.all_frames);
+  EXPECT_LT(*diagnosis.all_frames, 1.2 * diagnosis.noise_floor);
+  EXPECT_EQ(diagnosis.twin.levels[0].system.effects.back().values, diagnosis.effects[0].values);
+  EXPECT_EQ(diagnosis.twin.trained_on[0].train_frames, kFrames);
 }
 
 TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {

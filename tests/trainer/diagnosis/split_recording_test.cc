@@ -30,6 +30,13 @@ TEST(SplitRecording, HoldsOutTheFuture) {
   EXPECT_EQ(split.use[0], Use::kNone);
 }
 
+TEST(SplitRecording, FitsWhatWasHeldOut) {
+  const Recording recording = Frames(20, 14);
+  const SplitRecording split = FitHeldOut(HoldOutFrames(recording));
+  EXPECT_EQ(Count(split, Use::kFit), 19);
+  EXPECT_EQ(split.use[0], Use::kNone);
+}
+
 TEST(SplitRecording, HoldsOutEveryFourthBlockWhereThereIsNoFuture) {
   const Recording recording = Frames(25, 25);  // blocks of three frames
   const SplitRecording split = HoldOutFrames(recording);

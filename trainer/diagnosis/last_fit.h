@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fit that a diagnosis ends with, once everything is chosen and judged.
+#ifndef PHYSPRING_TRAINER_DIAGNOSIS_LAST_FIT_H_
+#define PHYSPRING_TRAINER_DIAGNOSIS_LAST_FIT_H_
+
+#include <optional>
+
+#include "trainer/diagnosis/effect_fit.h"
+
+namespace physpring {
+
+// The common factors and the effects of the fit that was chosen, from where they are, by
+// Levenberg-Marquardt on all frames, the held-out ones included: `track.fit` is over all of them,
+// and nothing is left to judge by. Nothing if the motion diverges.
+std::optional<EffectFit> FitAllFrames(const EffectFitting& fitting, const WorkShare& share,
+                                      const EffectFit& chosen);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DIAGNOSIS_LAST_FIT_H_
