@@ -69,6 +69,24 @@ void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
   }
 }
 
+// What such a twin lacks is not in the list, or it is not of this object.
+void WarnIfUseless(const Diagnosis& diagnosis) {
+  if (!(diagnosis.after.held > diagnosis.motionless)) return;
+  fmt::print(stderr,
+             "warning: the twin predicts worse than a body that does not move ({:.4g} m against "
+             "{:.4g} m): are the recordings of its object, in metres, with points in its order?\n",
+             diagnosis.after.held, diagnosis.motionless);
+}
+
+// Only level 0 is fitted.
+void WarnOfCoarseLevels(const Twin& twin) {
+  if (twin.levels.size() < 2) return;
+  fmt::print(
+      stderr,
+      "warning: coarse levels have the effects, but are not fitted with them: physpring train "
+      "--effects fits a hierarchy\n");
+}
+
 // Before the work: makes the folder.
 Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<RecordingEntry>& fit,
                     const std::vector<RecordingEntry>& held_out) {
@@ -156,6 +174,8 @@ void Run(const DiagnoseArguments& arguments) {
   WriteTwin(diagnosis.twin, outputs.twin);
   checkpoint.Finish();
   WarnOfMass(twin, chosen);
+  WarnIfUseless(diagnosis);
+  if (!diagnosis.effects.empty()) WarnOfCoarseLevels(diagnosis.twin);
   fmt::print("{}", FormatDiagnosisText(diagnosis));
 }
 

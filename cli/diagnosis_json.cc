@@ -117,6 +117,7 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
         {"heldout", diagnosis.judged},
         {"resting_frames", diagnosis.resting_frames}}},
       {"noise_floor", diagnosis.noise_floor},
+      {"motionless", Number(diagnosis.motionless)},
       {"before", Pair(diagnosis.before)},
       {"effects", EffectList(diagnosis)},
       {"after", Pair(diagnosis.after)},

@@ -93,14 +93,16 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
   page += fmt::format(
       "<table><tr><th>track error</th><th>fitted frames</th><th>held-out frames</th></tr>"
       "<tr><td>before</td><td>{}</td><td>{}</td></tr><tr><td>after</td><td>{}</td><td>{}</td></tr>"
-      "{}<tr><td>noise floor</td><td colspan='2'>{}</td></tr></table><p>{}.</p>",
+      "{}<tr><td>noise floor</td><td colspan='2'>{}</td></tr>"
+      "<tr><td>a body that does not move</td><td></td><td>{}</td></tr></table><p>{}.</p>",
       InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held),
       InMillimetres(diagnosis.after.fit), InMillimetres(diagnosis.after.held),
       diagnosis.all_frames
           ? fmt::format("<tr><td>twin, fitted to all frames</td><td colspan='2'>{}</td></tr>",
                         InMillimetres(*diagnosis.all_frames))
           : "",
-      InMillimetres(diagnosis.noise_floor), DescribeGain(diagnosis.gain));
+      InMillimetres(diagnosis.noise_floor), InMillimetres(diagnosis.motionless),
+      DescribeGain(diagnosis.gain));
   page += TrackPlot(diagnosis);
   page += "<h2>Effects added</h2><ul>";
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
@@ -111,16 +113,17 @@ std::string FormatDiagnosisPage(const Diagnosis& diagnosis, const Recording& rec
   page += diagnosis.effects.empty() ? "<li>none</li></ul>" : "</ul>";
   if (!diagnosis.effects.empty()) {
     const std::string confounded = DescribeConfounded(diagnosis);
-    page += fmt::format(
-        "<p>Behind ±: half a 95 % interval, from the misfit's curvature and how alike neighbouring "
-        "residuals are{}.</p>",
-        confounded.empty() ? "" : "; " + confounded);
+    page += fmt::format("<p>{}{}.</p>", DescribeCertainty(diagnosis),
+                        confounded.empty() ? "" : "; " + confounded);
   }
   page += fmt::format("<h2>Forces that are missing</h2><p>{}.</p>{}", DescribeResidual(diagnosis),
                       FormatResidualPlots(diagnosis, recording));
   for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
     if (diagnosis.rankings[i].empty()) continue;  // nothing was missing any more
-    const std::string beside = i == 0 ? "" : ", beside " + diagnosis.effects.at(i - 1).name;
+    std::string beside;
+    for (std::size_t n = 0; n < i; ++n) {
+      beside += (n == 0 ? ", beside " : " and ") + diagnosis.effects.at(n).name;
+    }
     page += fmt::format("<h2>Candidates{}</h2>{}", beside, RankingTable(diagnosis.rankings[i]));
   }
   return page + "</html>\n";

@@ -11,7 +11,8 @@
 namespace physpring {
 namespace {
 
-constexpr double kSteady = 0.7;  // a direction that turns by a third of a circle has 0.83
+constexpr double kAtTheNoise = 0.25;  // of the noise floor, above it
+constexpr double kSteady = 0.7;       // a direction that turns by a third of a circle has 0.83
 
 // "a, b", or `none`.
 std::string Join(const std::vector<std::string>& names, const char* none) {
@@ -34,7 +35,7 @@ std::string InMillimetres(double metres) {
 }
 
 std::string DescribeGain(const BootstrapResult& gain) {
-  return fmt::format("{:.2f} mm less, 95 % interval {:.2f} to {:.2f}", 1e3 * gain.mean,
+  return fmt::format("gain {:.2f} mm, 95 % interval {:.2f} to {:.2f}", 1e3 * gain.mean,
                      1e3 * gain.low, 1e3 * gain.high);
 }
 
@@ -63,28 +64,42 @@ std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect) {
   return text;
 }
 
+std::string DescribeCertainty(const Diagnosis& diagnosis) {
+  return fmt::format(
+      "behind ±: half a 95 % interval, from the misfit's curvature and how alike neighbouring "
+      "residuals are{}",
+      diagnosis.unexplained ? "; too narrow, since the model lacks more than what was found" : "");
+}
+
 std::string DescribeConfounded(const Diagnosis& diagnosis) {
   const std::vector<std::string> names = Confounded(diagnosis);
   return names.empty() ? "" : "as good on these recordings: " + Join(names, "");
 }
 
 std::string Verdict(const Diagnosis& diagnosis) {
-  if (diagnosis.effects.empty() && !diagnosis.unexplained) return "nothing is missing";
-  std::string verdict;
+  const double left = diagnosis.after.held - diagnosis.noise_floor;
+  if (diagnosis.effects.empty() && !diagnosis.unexplained) {
+    const bool some = left > kAtTheNoise * diagnosis.noise_floor;
+    return "nothing is missing" +
+           (some ? fmt::format(
+                       " that could be told: {} above the noise are left, too little to trace",
+                       InMillimetres(left))
+                 : "");
+  }
+  std::string verdict = diagnosis.effects.empty() ? "no effect was found" : "";
   for (const EffectValues& effect : diagnosis.effects) {
     verdict += (verdict.empty() ? "the model lacks " : ", ") + effect.name;
   }
   if (!diagnosis.unexplained) return verdict;
-  const Unexplained& left = *diagnosis.unexplained;
-  verdict += fmt::format("{}{} above the noise are unexplained", verdict.empty() ? "" : "; ",
-                         InMillimetres(left.track));
-  if (!left.located) return verdict + ", and no force on what was fitted would explain them";
+  const Unexplained& where = *diagnosis.unexplained;
+  verdict += fmt::format("; {} above the noise are unexplained", InMillimetres(where.track));
+  if (!where.located) return verdict + ", and no force on what was fitted would explain them";
   return verdict + fmt::format(
                        ": a force, largest on particle {}, mostly from {:.2f} to {:.2f} s, then "
                        "towards ({:.2f}, {:.2f}, {:.2f}), which {}",
-                       left.particle, left.first_time, left.last_time, left.direction[0],
-                       left.direction[1], left.direction[2],
-                       left.steadiness > kSteady ? "stays" : "turns");
+                       where.particle, where.first_time, where.last_time, where.direction[0],
+                       where.direction[1], where.direction[2],
+                       where.steadiness > kSteady ? "stays" : "turns");
 }
 
 std::string DescribeResidual(const Diagnosis& diagnosis) {
@@ -118,14 +133,15 @@ std::string DescribeRecordings(const Diagnosis& diagnosis) {
 
 std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   std::string text = DescribeRecordings(diagnosis) + "\n";
-  text += fmt::format("noise floor: {}\n", InMillimetres(diagnosis.noise_floor));
+  text += fmt::format("noise floor: {}; held out, a body that does not move: {}\n",
+                      InMillimetres(diagnosis.noise_floor), InMillimetres(diagnosis.motionless));
   text += fmt::format("before, refitted without new effects: fit {}, held out {}\n",
                       InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held));
   for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
     for (const EffectCandidate& candidate : diagnosis.rankings[i]) {
       if (!candidate.refit) continue;
       text +=
-          fmt::format("  {:<18} takes {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
+          fmt::format("  {:<18} linearised {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
                       candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
                       DescribeGain(candidate.gain), candidate.gain.p);
     }
@@ -136,6 +152,7 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
       text += "added: none, since none surely takes enough of the error above the noise\n";
     }
   }
+  if (!diagnosis.effects.empty()) text += DescribeCertainty(diagnosis) + "\n";
   const std::string confounded = DescribeConfounded(diagnosis);
   if (!confounded.empty()) text += confounded + "\n";
   text += fmt::format("after: fit {}, held out {}\n", InMillimetres(diagnosis.after.fit),

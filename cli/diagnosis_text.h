@@ -20,6 +20,7 @@ std::string InMillimetres(double metres);                    // "1.20 mm", or "n
 std::string Verdict(const Diagnosis& diagnosis);             // "the model lacks air_drag"
 std::string DescribeRecordings(const Diagnosis& diagnosis);  // "fitted to a; judged by b"
 std::string DescribeGain(const BootstrapResult& gain);       // with its 95 % interval
+std::string DescribeCertainty(const Diagnosis& diagnosis);   // what is behind "+-"
 std::string DescribeConfounded(const Diagnosis& diagnosis);  // empty if nothing is confounded
 std::string DescribeResidual(const Diagnosis& diagnosis);    // "missing force on a node: ..."
 // "mass_kg 0.052 +- 0.001, place_x_m 0.1 +- 0.003, ..." of the effect of that index.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program `physpring`. Exit status: 0 done, 1 failed (one line on stderr), 2 bad usage, 128 + n
 // stopped by signal n (after Ctrl-C 130).
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -20,6 +21,7 @@ std::string DescribeBadUsage(const CLI::App* app, const CLI::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is a failed write like others
   CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);

@@ -87,6 +87,11 @@ std::string ConeAttribute(const LevelPlan& plan) {
   return plan.WantsEllipticCone() ? fmt::format(" cone=\"{}\"", kElliptic) : "";
 }
 
+// The plugin's sub-steps are its own.
+std::string TimestepLimit(const LevelPlan& plan) {
+  return plan.springs == SpringKind::kPlugin ? "" : " and a time step below the largest stable one";
+}
+
 }  // namespace
 
 std::string FormatReadme(const std::vector<ExportedLevel>& levels, const std::string& command) {
@@ -109,7 +114,7 @@ model = mujoco.MjModel.from_xml_path("scene.xml")
 
 {5} {6}
 
-{7}{9}In a scene of your own, with the Euler integrator and a time step below the largest stable one:
+{7}{9}In a scene of your own, with the Euler integrator{12}:
 
 ```xml
 <option timestep="{10}" integrator="Euler"{11}/>
@@ -126,7 +131,8 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
                      plan.name, plan.twin->trained_on.empty() ? "a recording" : "recordings",
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
                      DescribeContact(plan), DescribeControllers(plan), levels[0].model,
-                     DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan));
+                     DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan),
+                     TimestepLimit(plan));
 }
 
 }  // namespace physpring

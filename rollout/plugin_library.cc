@@ -28,8 +28,8 @@ fs::path FindLibrary() {
     if (fs::exists(file)) return file;
   }
   throw Error(
-      "libphyspring_plugin.so is not beside this program; the variable PHYSPRING_PLUGIN can name "
-      "it");
+      "libphyspring_plugin.so is not beside this program: scripts/setup builds it, or the variable "
+      "PHYSPRING_PLUGIN can name it");
 }
 
 }  // namespace

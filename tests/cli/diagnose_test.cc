@@ -95,6 +95,40 @@ TEST_F(Diagnose, IsNotJudgedByFramesInWhichNothingIsSeen) {
                         ": its points are seen in 2 of the frames to judge by, 5 are the fewest"));
 }
 
+TEST_F(Diagnose, NeedsNoiseThatCanBeMeasured) {
+  Recording recording = RecordingOfMotion(SmallTwin(1), 40);
+  for (Points& points : recording.points) points = recording.points[0];
+  for (const std::string& file : {swing_, held_}) WriteRecording(recording, file);
+  swing_ = folder_.File("still.npz");
+  recording.points[1](0, 0) += 1e-3;  // another file
+  WriteRecording(recording, swing_);
+  EXPECT_TRUE(
+      FailsWith(Run(output_), "recording still: its points neither move nor have any noise"));
+  for (std::size_t frame = 1; frame < 40; frame += 2) {
+    recording.points[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  for (const std::string& file : {swing_, held_}) {
+    WriteRecording(recording, file);
+    recording.points[2](0, 0) += 1e-3;
+  }
+  EXPECT_TRUE(FailsWith(Run(output_),
+                        "recording still: none of its points is seen in five frames in a row"));
+}
+
+TEST_F(Diagnose, WarnsOfATwinThatIsWorseThanABodyThatDoesNotMove) {
+  EXPECT_EQ(Run(output_).errors.find("does not move"), std::string::npos);
+  Recording recording = RecordingOfMotion(SmallTwin(1), 12);
+  for (int frame = 1; frame < 12; ++frame) {  // trembles
+    recording.points[frame] = recording.points[0].array() + 1e-5 * (frame % 3);
+  }
+  WriteRecording(recording, held_);
+  const ProgramResult result = Run(folder_.File("other"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.errors.find("warning: the twin predicts worse than a body that does not move"),
+            std::string::npos)
+      << result.errors;
+}
+
 TEST_F(Diagnose, WarnsOfAnotherMass) {
   Recording recording = RecordingOfMotion(SmallTwin(1), 12);
   EXPECT_EQ(Run(output_).errors.find("weighs"), std::string::npos);
@@ -126,7 +160,7 @@ class DiagnoseAnew : public Diagnose {
     heavy.levels[0].system.mass.head(8) *= 3;
     WriteRecording(RecordingOfMotion(heavy, 10), swing_);
     WriteRecording(RecordingOfMotion(heavy, 12), held_);
-    Twin twin = SmallTwin(1);
+    Twin twin = SmallTwin(2);
     twin.trained_on = {{"swing", HashFile(swing_), 10}};
     WriteTwin(twin, twin_);
   }
@@ -145,6 +179,16 @@ class DiagnoseAnew : public Diagnose {
 
   std::string whole_ = folder_.File("whole"), printed_ = folder_.File("printed");
 };
+
+TEST_F(DiagnoseAnew, GivesTheEffectsToCoarseLevels) {
+  const ProgramResult result = RunProgram(Words(whole_, {}));
+  EXPECT_NE(result.errors.find("warning: coarse levels have the effects, but"), std::string::npos)
+      << result.errors;
+  const Twin twin = ReadTwin(whole_ + "/small.twin.npz");
+  ASSERT_FALSE(twin.levels[0].system.effects.empty());
+  ASSERT_EQ(twin.levels[1].system.effects.size(), twin.levels[0].system.effects.size());
+  EXPECT_EQ(twin.levels[1].system.effects[0].values, twin.levels[0].system.effects[0].values);
+}
 
 // Killed or interrupted at random moments, with many checkpoints, and resumed with one or two
 // threads.

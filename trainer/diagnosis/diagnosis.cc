@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "trainer/diagnosis/effect_loop.h"
@@ -69,10 +70,26 @@ void ExpectSplit(const std::vector<SplitRecording>& splits) {
   }
 }
 
+// What is left to explain is told in units of the noise, so there must be some.
 double NoiseOf(const std::vector<SplitRecording>& splits) {
   std::vector<const Recording*> all;
   for (const SplitRecording& split : splits) all.push_back(split.recording);
-  return MeasurementNoise(all);
+  const double noise = MeasurementNoise(all);
+  if (noise > 0) return noise;
+  throw Error(fmt::format(
+      "recording {}: {}", splits[0].recording->name,
+      std::isnan(noise)
+          ? "none of its points is seen in five frames in a row, so its noise cannot be measured"
+          : "its points neither move nor have any noise, so there is nothing to diagnose"));
+}
+
+// Mean track error of the held-out frames if nothing moved.
+double MotionlessTrack(const std::vector<SplitRecording>& splits) {
+  std::vector<std::vector<Points>> still;
+  for (const SplitRecording& split : splits) {
+    still.emplace_back(split.use.size(), split.recording->start);
+  }
+  return Mean(TrackOf(splits, still, Use::kHeld));
 }
 
 // Whether training has seen none of the frames that are held out.
@@ -98,12 +115,15 @@ std::vector<EffectValues> NewEffects(const EffectFit& fit, const std::vector<Eff
   return {all.begin() + static_cast<long>(known.size()), all.end()};
 }
 
-// The twin with the fit's system at level 0, and the new effects at all levels.
-Twin TwinWith(Twin twin, const EffectFit& fit, const std::vector<EffectValues>& effects,
+// The twin with the fit's system at level 0, and its effects at all levels: behind those that
+// belong to the body, `own` of them.
+Twin TwinWith(Twin twin, const EffectFit& fit, std::size_t own,
               const std::vector<SplitRecording>& splits) {
   twin.training_state.clear();
+  const auto first = fit.system.effects.begin() + static_cast<long>(own);
   for (TwinLevel& level : twin.levels) {
-    level.system.effects.insert(level.system.effects.end(), effects.begin(), effects.end());
+    level.system.effects.resize(own);
+    level.system.effects.insert(level.system.effects.end(), first, fit.system.effects.end());
   }
   TwinLevel& dense = twin.levels[0];
   dense.system = fit.system;
@@ -142,12 +162,14 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   const double noise = NoiseOf(splits);
   for (SplitRecording& split : splits) result.resting_frames += LeaveOutRest(noise, &split);
   result.noise_floor = TrackNoiseFloor(noise);
+  result.motionless = MotionlessTrack(splits);
   const EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits,
                               options.threads, options.journal);
   EffectLoop loop(fitting, result.noise_floor, options, kLoopShare);
+  // those of the body itself, if it has any, or of the twin so far
+  const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
-  const bool belong = !fitting.bodies()[0].base.effects.empty();  // to the body
-  if (!loop.FitCommon(belong ? std::vector<EffectValues>() : known)) {
+  if (!loop.FitCommon(own.empty() ? known : std::vector<EffectValues>())) {
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",
                             recordings[0].name, twin.name));
   }
@@ -188,7 +210,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     result.effects = NewEffects(*last, known);
     for (SplitRecording& split : splits) split = FitHeldOut(split);
   }
-  result.twin = TwinWith(twin, last ? *last : accepted, result.effects, splits);
+  result.twin = TwinWith(twin, last ? *last : accepted, own.size(), splits);
   return result;
 }
 

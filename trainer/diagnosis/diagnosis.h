@@ -66,6 +66,7 @@ struct Diagnosis {
   int resting_frames = 0;                   // that are left out (split_recording.h)
   bool trained_on = false;                  // the twin was trained on one of the recordings
   double noise_floor = 0;                   // track error of a perfect model, m
+  double motionless = 0;                    // of held-out frames, if nothing moved, m
   TrackPair before{}, after{};
   BootstrapResult gain;  // of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;

@@ -30,8 +30,17 @@ constexpr double kRival = 1.25;
 // and the training.
 constexpr double kCommonPart = 0.2, kFollowPart = 0.45, kSearchPart = 0.5, kTrainingPart = 0.65;
 
-std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMassSystem& body) {
-  const BodyTraits traits = {recording.ground.has_value(), IsSolid(body), body.order.size() > 0};
+// Whether frames to judge by lie between frames to fit.
+bool IsJudgedInBetween(const SplitRecording& split) {
+  const auto held = std::find(split.use.begin(), split.use.end(), SplitRecording::Use::kHeld);
+  return std::find(held, split.use.end(), SplitRecording::Use::kFit) != split.use.end();
+}
+
+std::vector<const Effect*> EffectsFor(const std::vector<SplitRecording>& splits,
+                                      const SpringMassSystem& body) {
+  const bool ground = splits[0].recording->ground.has_value();
+  const BodyTraits traits = {ground, IsSolid(body), body.order.size() > 0};
+  const bool in_between = std::any_of(splits.begin(), splits.end(), IsJudgedInBetween);
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {
     if (!effect->MayBeMissing(traits)) continue;
@@ -39,6 +48,7 @@ std::vector<const Effect*> EffectsFor(const Recording& recording, const SpringMa
         std::any_of(body.effects.begin(), body.effects.end(),
                     [&](const EffectValues& own) { return own.name == effect->name(); });
     if (has_it) continue;
+    if (in_between && HasFreeForm(*effect)) continue;  // it would be judged by interpolation
     effects.push_back(effect);
   }
   return effects;
@@ -54,7 +64,7 @@ EffectLoop::EffectLoop(const EffectFitting& fitting, double noise_floor,
       options_(options),
       common_share_(share.Part(0, kCommonPart)),
       rounds_share_(share.Part(kCommonPart, 1)),
-      effects_(EffectsFor(*fitting.recordings()[0].recording, fitting.bodies()[0].base)),
+      effects_(EffectsFor(fitting.recordings(), fitting.bodies()[0].base)),
       block_(static_cast<int>(std::ceil(kBlock * fitting.recordings()[0].recording->fps))) {}
 
 bool EffectLoop::FitCommon(const std::vector<EffectValues>& known) {
@@ -101,7 +111,7 @@ bool EffectLoop::Round(int round) {
   const auto tried = static_cast<int>(search.fits.size());
   // hundreds of springs may bend to what a few parameters explain
   const bool without_springs =
-      IsWorthIt(common_, chosen, kSimplyExplained, tried) &&
+      !IsFreeForm(chosen) && IsWorthIt(common_, chosen, kSimplyExplained, tried) &&
       with_springs.track.held < accepted_.track.held + options_.least_noise * noise_floor_;
   if (!without_springs && !IsWorthIt(accepted_, with_springs, options_.least_gain, tried)) {
     return false;

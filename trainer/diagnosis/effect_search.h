@@ -51,6 +51,7 @@ void FollowAgain(const EffectFitting& fitting, const WorkShare& stage, EffectFit
 // Whether the fit's new effect has so many parameters that it takes the shape of others. It does
 // not compete with them.
 bool IsFreeForm(const EffectFit& fit);
+bool HasFreeForm(const Effect& effect);
 
 // Which of `fits` to take: of those whose held-out error is within one standard error (of the
 // paired difference) of the least, the one with the fewest parameters. `block`: frames that are

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace physpring {
@@ -18,7 +19,7 @@ double MeasurementNoise(const std::vector<const Recording*>& recordings) {
       }
     }
   }
-  if (differences.empty()) return 0;
+  if (differences.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
   constexpr double kMedian = 0.6745;  // of |z|, z of deviation 1

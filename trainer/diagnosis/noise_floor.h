@@ -11,8 +11,8 @@
 
 namespace physpring {
 
-// Standard deviation of a coordinate of a measured point, m; 0 if no point was seen in five frames
-// in a row.
+// Standard deviation of a coordinate of a measured point, m; NaN if no point was seen in five
+// frames in a row.
 double MeasurementNoise(const std::vector<const Recording*>& recordings);
 
 // The track error that a perfect model would still show: mean length of noise of that deviation in

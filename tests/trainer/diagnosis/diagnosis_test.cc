@@ -81,8 +81,8 @@ void MoveByMujoco(const SpringMassSystem& system, const Eigen::Vector3d& gravity
 
 // The diagnosis of a twin that was trained on the first of two motions, judged by the other or by
 // frames of the same.
-enum class JudgedBy { kOther, kFrames };
-Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity, JudgedBy judge = JudgedBy::kOther) {
+enum class JudgedBy { kOtherMotion, kOtherFrames };
+Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity, JudgedBy judge = JudgedBy::kOtherMotion) {
   Recording fit = HungSheet(0), other = HungSheet(1);
   const SpringMassSystem system = SheetSystem(fit);
   MoveByMujoco(system, gravity, &fit);
@@ -97,7 +97,7 @@ Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity, JudgedBy judge = JudgedB
   DiagnosisOptions options;
   options.threads = 2;
   options.most_effects = 1;
-  if (judge == JudgedBy::kFrames) return Diagnose(twin, {fit}, {}, options);
+  if (judge == JudgedBy::kOtherFrames) return Diagnose(twin, {fit}, {}, options);
   return Diagnose(twin, {fit}, {other}, options);
 }
 
@@ -131,7 +131,7 @@ TEST(Diagnosis, FindsTiltedGravity) {
 
 TEST(Diagnosis, EndsWithAFitToAllFrames) {
   constexpr double kTilt = 0.12;
-  const Diagnosis diagnosis = DiagnoseSheet(TiltedGravity(kTilt), JudgedBy::kFrames);
+  const Diagnosis diagnosis = DiagnoseSheet(TiltedGravity(kTilt), JudgedBy::kOtherFrames);
   ASSERT_EQ(diagnosis.effects.size(), 1U);
   EXPECT_NEAR(diagnosis.effects[0].values[0], kTilt, 0.1 * kTilt);
   ASSERT_TRUE(diagnosis.all_frames);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/random_system.h"
+#include "twin/effects/registry.h"
 
 namespace physpring {
 namespace {
@@ -31,6 +32,12 @@ TEST(ChooseSimplest, TakesTheBestWhereErrorsDiffer) {
 }
 
 TEST(ChooseSimplest, TakesTheOnlyOne) { EXPECT_EQ(ChooseSimplest({MakeFit(3, 1, 1)}, 5, 0), 0U); }
+
+TEST(HasFreeForm, AFreeTimeCourseAlone) {
+  for (const Effect* effect : AllEffects()) {
+    EXPECT_EQ(HasFreeForm(*effect), effect->name() == "uniform_force") << effect->name();
+  }
+}
 
 }  // namespace
 }  // namespace physpring

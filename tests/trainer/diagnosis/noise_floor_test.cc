@@ -51,6 +51,14 @@ TEST(NoiseFloor, LeavesUnseenPointsOut) {
   EXPECT_NEAR(MeasurementNoise({&recording}), 7e-4, 0.05 * 7e-4);
 }
 
+TEST(NoiseFloor, IsUnknownWhereNoPointIsSeenInFiveFramesInARow) {
+  Recording recording = Swing(7e-4);
+  for (std::size_t t = 0; t < recording.points.size(); t += 4) {
+    recording.points[t].setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  EXPECT_TRUE(std::isnan(MeasurementNoise({&recording})));
+}
+
 TEST(NoiseFloor, IsTheMeanLengthOfNoise) {
   EXPECT_NEAR(TrackNoiseFloor(7e-4), 1.117e-3, 1e-6);  // 2 s sqrt(2 / pi)
 }
