@@ -12,6 +12,7 @@
 
 #include "rollout/mujoco_log.h"
 #include "rollout/osmesa.h"
+#include "rollout/plugin_library.h"
 #include "twin/error.h"
 #include "twin/kernel_choice.h"
 
@@ -68,6 +69,11 @@ Finding Plugins() {
     }
   } else {
     finding.problem = folder.string() + " is not a folder; MUJOCO_PLUGIN_DIR can name another";
+  }
+  try {
+    LoadPluginLibrary();  // ours
+  } catch (const Error& error) {
+    finding.problem += (finding.problem.empty() ? "" : "; ") + std::string(error.what());
   }
   std::vector<std::string> names;
   for (int slot = 0; slot < mjp_pluginCount(); ++slot) {

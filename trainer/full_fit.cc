@@ -163,7 +163,8 @@ void FullFit::StepGaussNewton() {
   state_.x = after.x;
   state_.damping = after.damping;
   state_.mean_square = after.mean_square;
-  status_ = fmt::format("single springs: {:.3f} mm", PointMillimetres(after.mean_square));
+  status_ = fmt::format("single springs: root mean square {:.3f} mm",
+                        PointMillimetres(after.mean_square));
   const bool first_step = state_.iteration++ == 0;
   const bool stuck = IsStuck(before, after, first_step);
   const bool gained = first_step || after.mean_square < kSlowStep * before.mean_square;
@@ -234,7 +235,7 @@ void FullFit::StepAdam() {
   state_.adam_mean = adam.mean;
   state_.adam_mean_square = adam.mean_square;
   status_ = fmt::format(
-      "single springs: {:.3f} mm, best {:.3f}{}", PointMillimetres(mean_square),
+      "single springs: root mean square {:.3f} mm, best {:.3f}{}", PointMillimetres(mean_square),
       PointMillimetres(state_.best_mean_square),
       problem.cuts() > 0 ? fmt::format(" (adjoint cut into {} windows)", problem.cuts() + 1) : "");
   const bool stuck = state_.slow >= kPatience && options_.epochs == 0;

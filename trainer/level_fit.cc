@@ -193,8 +193,8 @@ void LevelFit::StepSprings() {
     throw Error(fmt::format("level {} diverges: {} sub-steps a frame are too few", level_,
                             options_.substeps));
   }
-  status_ =
-      fmt::format("level {}, single springs: {:.3f} mm", level_, PointMillimetres(mean_square_));
+  status_ = fmt::format("level {}, single springs: root mean square {:.3f} mm", level_,
+                        PointMillimetres(mean_square_));
   const bool slow = iteration_ > 0 && after.mean_square > 0.99 * before.mean_square;
   if (++iteration_ >= kLevelGaussNewtonSteps || after.converged || slow) stage_ = Stage::kDone;
 }
