@@ -11,8 +11,7 @@
 namespace physpring {
 namespace {
 
-constexpr double kAtTheNoise = 0.25;  // of the noise floor, above it
-constexpr double kSteady = 0.7;       // a direction that turns by a third of a circle has 0.83
+constexpr double kSteady = 0.7;  // a direction that turns by a third of a circle has 0.83
 
 // "a, b", or `none`.
 std::string Join(const std::vector<std::string>& names, const char* none) {
@@ -77,29 +76,26 @@ std::string DescribeConfounded(const Diagnosis& diagnosis) {
 }
 
 std::string Verdict(const Diagnosis& diagnosis) {
-  const double left = diagnosis.after.held - diagnosis.noise_floor;
   if (diagnosis.effects.empty() && !diagnosis.unexplained) {
-    const bool some = left > kAtTheNoise * diagnosis.noise_floor;
-    return "nothing is missing" +
-           (some ? fmt::format(
-                       " that could be told: {} above the noise are left, too little to trace",
-                       InMillimetres(left))
-                 : "");
+    if (diagnosis.after.held <= kExplained * diagnosis.noise_floor) return "nothing is missing";
+    return fmt::format(
+        "nothing is missing that could be told: {} above the noise are left, too little to trace",
+        InMillimetres(diagnosis.after.held - diagnosis.noise_floor));
   }
   std::string verdict = diagnosis.effects.empty() ? "no effect was found" : "";
   for (const EffectValues& effect : diagnosis.effects) {
     verdict += (verdict.empty() ? "the model lacks " : ", ") + effect.name;
   }
   if (!diagnosis.unexplained) return verdict;
-  const Unexplained& where = *diagnosis.unexplained;
-  verdict += fmt::format("; {} above the noise are unexplained", InMillimetres(where.track));
-  if (!where.located) return verdict + ", and no force on what was fitted would explain them";
+  const Unexplained& left = *diagnosis.unexplained;
+  verdict += fmt::format("; {} above the noise are unexplained", InMillimetres(left.track));
+  if (!left.located) return verdict + ", and no force on what was fitted would explain them";
   return verdict + fmt::format(
                        ": a force, largest on particle {}, mostly from {:.2f} to {:.2f} s, then "
                        "towards ({:.2f}, {:.2f}, {:.2f}), which {}",
-                       where.particle, where.first_time, where.last_time, where.direction[0],
-                       where.direction[1], where.direction[2],
-                       where.steadiness > kSteady ? "stays" : "turns");
+                       left.particle, left.first_time, left.last_time, left.direction[0],
+                       left.direction[1], left.direction[2],
+                       left.steadiness > kSteady ? "stays" : "turns");
 }
 
 std::string DescribeResidual(const Diagnosis& diagnosis) {

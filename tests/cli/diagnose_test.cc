@@ -37,6 +37,11 @@ class Diagnose : public testing::Test {
     return RunProgram(words);
   }
 
+  static void ExpectWarning(const ProgramResult& result, const std::string& warning) {
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.errors.find("warning: " + warning), std::string::npos) << result.errors;
+  }
+
   TemporaryFolder folder_;
   std::string twin_ = folder_.File("small.twin.npz"), swing_ = folder_.File("swing.npz"),
               held_ = folder_.File("held.npz"), output_ = folder_.File("diagnosis");
@@ -97,22 +102,21 @@ TEST_F(Diagnose, IsNotJudgedByFramesInWhichNothingIsSeen) {
 
 TEST_F(Diagnose, NeedsNoiseThatCanBeMeasured) {
   Recording recording = RecordingOfMotion(SmallTwin(1), 40);
+  const auto write_both = [&] {
+    WriteRecording(recording, swing_);
+    recording.points[2](0, 0) += 1e-3;  // the other is no copy
+    WriteRecording(recording, held_);
+  };
   for (Points& points : recording.points) points = recording.points[0];
-  for (const std::string& file : {swing_, held_}) WriteRecording(recording, file);
-  swing_ = folder_.File("still.npz");
-  recording.points[1](0, 0) += 1e-3;  // another file
-  WriteRecording(recording, swing_);
+  write_both();
   EXPECT_TRUE(
-      FailsWith(Run(output_), "recording still: its points neither move nor have any noise"));
+      FailsWith(Run(output_), "recording swing: its points neither move nor have any noise"));
   for (std::size_t frame = 1; frame < 40; frame += 2) {
     recording.points[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  for (const std::string& file : {swing_, held_}) {
-    WriteRecording(recording, file);
-    recording.points[2](0, 0) += 1e-3;
-  }
+  write_both();
   EXPECT_TRUE(FailsWith(Run(output_),
-                        "recording still: none of its points is seen in five frames in a row"));
+                        "recording swing: none of its points is seen in five frames in a row"));
 }
 
 TEST_F(Diagnose, WarnsOfATwinThatIsWorseThanABodyThatDoesNotMove) {
@@ -122,11 +126,8 @@ TEST_F(Diagnose, WarnsOfATwinThatIsWorseThanABodyThatDoesNotMove) {
     recording.points[frame] = recording.points[0].array() + 1e-5 * (frame % 3);
   }
   WriteRecording(recording, held_);
-  const ProgramResult result = Run(folder_.File("other"));
-  EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.errors.find("warning: the twin predicts worse than a body that does not move"),
-            std::string::npos)
-      << result.errors;
+  ExpectWarning(Run(folder_.File("other")),
+                "the twin predicts worse than a body that does not move");
 }
 
 TEST_F(Diagnose, WarnsOfAnotherMass) {
@@ -134,11 +135,7 @@ TEST_F(Diagnose, WarnsOfAnotherMass) {
   EXPECT_EQ(Run(output_).errors.find("weighs"), std::string::npos);
   recording.mass *= 2;
   WriteRecording(recording, held_);
-  const ProgramResult result = Run(folder_.File("other"));
-  EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.errors.find("warning: recording held: says that the object weighs "),
-            std::string::npos)
-      << result.errors;
+  ExpectWarning(Run(folder_.File("other")), "recording held: says that the object weighs ");
 }
 
 TEST_F(Diagnose, OverwritesNothingUnasked) {
@@ -181,9 +178,7 @@ class DiagnoseAnew : public Diagnose {
 };
 
 TEST_F(DiagnoseAnew, GivesTheEffectsToCoarseLevels) {
-  const ProgramResult result = RunProgram(Words(whole_, {}));
-  EXPECT_NE(result.errors.find("warning: coarse levels have the effects, but"), std::string::npos)
-      << result.errors;
+  ExpectWarning(RunProgram(Words(whole_, {})), "coarse levels have the effects, but");
   const Twin twin = ReadTwin(whole_ + "/small.twin.npz");
   ASSERT_FALSE(twin.levels[0].system.effects.empty());
   ASSERT_EQ(twin.levels[1].system.effects.size(), twin.levels[0].system.effects.size());

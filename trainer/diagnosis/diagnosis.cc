@@ -122,8 +122,9 @@ Twin TwinWith(Twin twin, const EffectFit& fit, std::size_t own,
   twin.training_state.clear();
   const auto first = fit.system.effects.begin() + static_cast<long>(own);
   for (TwinLevel& level : twin.levels) {
-    level.system.effects.resize(own);
-    level.system.effects.insert(level.system.effects.end(), first, fit.system.effects.end());
+    std::vector<EffectValues>& effects = level.system.effects;
+    effects.resize(std::min(own, effects.size()));
+    effects.insert(effects.end(), first, fit.system.effects.end());
   }
   TwinLevel& dense = twin.levels[0];
   dense.system = fit.system;

@@ -35,6 +35,9 @@
 
 namespace physpring {
 
+// Held-out errors below this, times the noise floor, say that nothing is missing.
+inline constexpr double kExplained = 1.25;
+
 struct DiagnosisOptions {
   int threads = 1;
   std::uint64_t seed = 0;

@@ -15,9 +15,9 @@ namespace {
 constexpr int kSpringSteps = 10;  // of Gauss-Newton, after an effect is found
 constexpr int kDraws = 2000;
 constexpr double kBlock = 0.2;  // s, of the bootstrap
-// Held-out errors, times the noise floor: below the first, nothing is missing, and single springs
-// would bend to the noise; below the second, nothing besides the effects that were found.
-constexpr double kExplained = 1.25, kExplainedByEffects = 2;
+// Held-out errors, times the noise floor: below kExplained single springs would bend to the noise;
+// below this nothing is missing besides the effects that were found.
+constexpr double kExplainedByEffects = 2;
 
 // Part of the error above the noise that an effect must explain with common factors alone, where
 // single springs could do without it.

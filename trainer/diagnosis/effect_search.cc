@@ -173,11 +173,7 @@ bool IsFreeForm(const EffectFit& fit) {
   return !fit.start.empty() && fit.start.back().values.size() > kFreeForm;
 }
 
-bool HasFreeForm(const Effect& effect) {
-  Eigen::Index count = 0;
-  for (const EffectParameter& parameter : effect.parameters()) count += parameter.count;
-  return count > kFreeForm;
-}
+bool HasFreeForm(const Effect& effect) { return effect.value_count() > kFreeForm; }
 
 FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectValues>& known,
                        const WorkShare& stage) {
