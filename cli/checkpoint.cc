@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/output_files.h"
-#include "cli/train_words.h"
-#include "twin/effects/effect_json.h"
+#include "cli/train_options.h"
+#include "training_code.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -18,39 +18,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFinishedTraining = "train/finished";
-constexpr const char* kStateVersion = "train/version";
-constexpr int kVersion = 1;  // of what fitters save; to be raised with each change of their stages
-
-Json NumberOrAuto(int number) { return number > 0 ? Json(number) : Json("auto"); }
-
-// Everything that the result depends on, but the seed, which has a place of its own. Not the number
-// of threads.
-std::string OptionsJson(const TrainOptions& options, const std::string& from) {
-  Json json;
-  json["method"] = WordOf(kMethodWords, options.method);
-  json["optimizer"] = WordOf(kOptimizerWords, options.optimizer);
-  json["levels"] = options.levels;
-  if (options.levels > 1) {
-    json["ratios"] =
-        std::vector<double>(options.ratios.begin(), options.ratios.begin() + options.levels - 1);
-    json["reduction"] = WordOf(kReductionWords, options.reduction);
-    json["latent"] = options.network.latent;
-    json["network_epochs"] = options.network.epochs;
-    json["network_updates"] = options.network.updates;
-    json["contact_updates"] = options.network.contact_updates;
-    json["features"] = WordOf(kFeatureWords, options.network.features);
-  }
-  if (!from.empty()) json["from"] = from;
-  if (!options.effects.empty()) json["effects"] = Json::parse(EffectsToJson(options.effects));
-  json["neighbours"] = options.neighbours.empty() ? Json("auto") : Json(options.neighbours);
-  json["epochs"] = NumberOrAuto(options.epochs);
-  json["substeps"] = NumberOrAuto(options.substeps);
-  json["precision"] = WordOf(kPrecisionWords, options.single_precision);
-  json["controller_velocity"] = WordOf(kVelocityWords, options.controller_velocity);
-  json["cone"] = WordOf(kConeWords, options.cone);
-  json["self_collision"] = options.self_collision ? "on" : "off";
-  return json.dump();
-}
+constexpr const char* kCode = "train/code";      // a hash of the code that trained
+constexpr const char* kJournal = "train/kept/";  // the prefix of a journal's arrays
 
 // "a/rope.twin.npz" -> "rope"
 std::string NameOfTwin(const std::string& path) {
@@ -82,7 +51,7 @@ Checkpoint::Checkpoint(const std::string& path, const FitData& data, const Train
   for (const Recording& recording : data.recordings) {
     labels_.trained_on.push_back({recording.name, recording.hash, recording.train_frames});
   }
-  labels_.options_json = OptionsJson(options, from);
+  labels_.options_json = TrainOptionsJson(options, from);
   labels_.seed = options.seed;
 }
 
@@ -129,36 +98,59 @@ void Checkpoint::ExpectSameTraining(const Twin& twin) const {
   }
 }
 
-void Checkpoint::Resume(Fitter* fitter) const {
-  if (!Exists(path_)) return;
+std::optional<Twin> Checkpoint::Resume(Journal* journal) const {
+  if (!Exists(path_)) return {};
   const Twin twin = ReadTwin(path_);
   ExpectSameTraining(twin);
-  const auto version = twin.training_state.find(kStateVersion);
-  if (version == twin.training_state.end() ||
-      version->second.ToInts() != std::vector<int>{kVersion}) {
+  const auto code = twin.training_state.find(kCode);
+  if (code == twin.training_state.end() || code->second.ToText() != kTrainingCode) {
     throw Error(fmt::format(
         "{}: its training was begun by another version of physpring; --force trains it anew",
         path_));
   }
-  try {
-    fitter->Load(twin.training_state);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path_, error.what()));
+  if (IsFinished(twin)) return twin;
+  Journal::Arrays kept;
+  for (const auto& [name, array] : twin.training_state) {
+    if (name.starts_with(kJournal)) kept[name.substr(std::string(kJournal).size())] = array;
   }
+  try {
+    journal->Load(kept);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: cannot resume: {}", path_, error.what()));
+  }
+  return twin;
 }
 
-Twin Checkpoint::Write(const Fitter& fitter, bool finished) const {
-  Twin twin = fitter.Result();
-  twin.name = labels_.name;
-  twin.trained_on = labels_.trained_on;
-  twin.options_json = labels_.options_json;
-  twin.seed = labels_.seed;
-  twin.training_state = fitter.Save();
+PieceKey Checkpoint::Key() const {
+  PieceKey key("training");
+  key.Add(kTrainingCode).Add(labels_.options_json).Add(static_cast<double>(labels_.seed));
+  for (const TrainedOn& recording : labels_.trained_on) key.Add(recording.hash);
+  return key;
+}
+
+Twin Checkpoint::Labelled(const Twin& twin, bool finished) const {
+  Twin labelled = twin;
+  labelled.name = labels_.name;
+  labelled.trained_on = labels_.trained_on;
+  labelled.options_json = labels_.options_json;
+  labelled.seed = labels_.seed;
   const int flag = finished ? 1 : 0;
-  twin.training_state[kFinishedTraining] = NpzArray::Ints({}, &flag);
-  twin.training_state[kStateVersion] = NpzArray::Ints({}, &kVersion);
+  labelled.training_state = {{kFinishedTraining, NpzArray::Ints({}, &flag)},
+                             {kCode, NpzArray::Text(kTrainingCode)}};
+  return labelled;
+}
+
+Twin Checkpoint::Write(const Twin& so_far, const Journal& journal) const {
+  Twin twin = Labelled(so_far, false);
+  for (const auto& [name, array] : journal.Save()) twin.training_state[kJournal + name] = array;
   WriteTwin(twin, path_);
   return twin;
+}
+
+Twin Checkpoint::WriteFinished(const Twin& twin) const {
+  const Twin labelled = Labelled(twin, true);
+  WriteTwin(labelled, path_);
+  return labelled;
 }
 
 }  // namespace physpring

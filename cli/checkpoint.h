@@ -4,9 +4,11 @@
 #ifndef PHYSPRING_CLI_CHECKPOINT_H_
 #define PHYSPRING_CLI_CHECKPOINT_H_
 
+#include <optional>
 #include <string>
 
-#include "trainer/fitter.h"
+#include "trainer/fit_data.h"
+#include "trainer/journal/journal.h"
 #include "trainer/train_options.h"
 #include "twin/twin.h"
 
@@ -29,15 +31,22 @@ class Checkpoint {
   // `force`.
   void ExpectReplaceable(bool force) const;
 
-  // Leads `fitter` to where the file left it; does nothing if there is no file. Throws Error if the
-  // file is no twin, or one of other recordings or other options (naming the first that differs).
-  void Resume(Fitter* fitter) const;
+  // Gives `journal` what is in the file, and returns its twin; nothing if there is no file. Throws
+  // Error if the file is no twin, or one of other recordings, other options (naming the first that
+  // differs) or another version of the program.
+  std::optional<Twin> Resume(Journal* journal) const;
 
-  // Writes the file, atomically, and returns what is in it.
-  Twin Write(const Fitter& fitter, bool finished) const;
+  // What the pieces of this training depend on, all together.
+  PieceKey Key() const;
+
+  // Write the file, atomically: the twin so far and what its training goes on from, or the finished
+  // twin. Both return what is in it.
+  Twin Write(const Twin& so_far, const Journal& journal) const;
+  Twin WriteFinished(const Twin& twin) const;
 
  private:
   void ExpectSameTraining(const Twin& twin) const;
+  Twin Labelled(const Twin& twin, bool finished) const;
 
   std::string path_;
   Twin labels_;  // only name, trained_on, options_json and seed are set

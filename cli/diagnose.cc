@@ -124,7 +124,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
     progress->Show(share, status);
   };
   Clock::time_point written = Clock::now();
-  journal.kept = [&] {
+  journal.kept = [&](const Journal::Piece&) {
     const std::chrono::duration<double> since = Clock::now() - written;
     if (since.count() < arguments.run.checkpoint_interval) return;
     checkpoint.Write(journal);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/output_files.h"
+#include "training_code.h"
 #include "twin/error.h"
 #include "twin/npz.h"
 
@@ -43,7 +44,7 @@ DiagnosisCheckpoint::DiagnosisCheckpoint(const std::string& path, const std::str
                                          const std::vector<Recording>& held_out,
                                          const DiagnosisOptions& options)
     : path_(path),
-      of_json_(Json{{"version", PHYSPRING_VERSION},
+      of_json_(Json{{"version", kTrainingCode},
                     {"twin", HashFile(twin)},
                     {"recordings", HashesOf(recordings)},
                     {"held-out recordings", HashesOf(held_out)},

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "trainer/diagnosis/diagnosis.h"
-#include "trainer/diagnosis/journal.h"
+#include "trainer/journal/journal.h"
 
 namespace physpring {
 

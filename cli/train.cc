@@ -20,10 +20,9 @@
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
-#include "cli/train_words.h"
+#include "cli/train_options.h"
 #include "cli/training.h"
 #include "trainer/fit_data.h"
-#include "trainer/make_fitter.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/predict.h"
@@ -116,7 +115,7 @@ std::vector<EffectValues> ReadEffects(const std::string& path) {
 }
 
 void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
-                 const std::string& status, double seconds) {
+                 double seconds) {
   for (std::size_t i = 0; i < run.twin.levels.size(); ++i) {
     const TwinLevel& level = run.twin.levels[i];
     fmt::print("{}: level {} with {} nodes, {} springs, {:.4g} sub-steps a frame\n", output, i,
@@ -124,7 +123,7 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
                level.substeps_per_second / run.twin.fps);
   }
   fmt::print("{}\n", fit_error);
-  if (!status.empty()) fmt::print("{}\n", status);
+  if (!run.status.empty()) fmt::print("{}\n", run.status);
   fmt::print("time: {}", FormatDuration(seconds));
   for (const auto& [part, part_seconds] : run.parts) {
     fmt::print(", {} {}", part, FormatDuration(part_seconds));
@@ -152,104 +151,35 @@ void Run(const TrainArguments& arguments) {
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
   checkpoint.ExpectReplaceable(arguments.run.resume || arguments.run.force);
   ExpectWritable(arguments, entries);
-  const std::unique_ptr<Fitter> fitter = MakeFitter(data, options, dense);
-  if (arguments.run.resume) checkpoint.Resume(fitter.get());
   OpenLog(arguments.log, arguments.run.resume);
   for (const Recording& recording : data.recordings) Warn(recording.warnings);
 
-  const TrainingRun run = RunTraining(fitter.get(), checkpoint, arguments.run.checkpoint_interval);
-  if (!run.finished) {
+  const TrainingRun run = RunTraining({data, options, dense}, checkpoint, arguments.run.resume,
+                                      arguments.run.checkpoint_interval);
+  if (run.signal != 0) {
     fmt::print(stderr,
                "physpring: stopped at {:.0f} %; the same command with --resume goes on "
                "from {}\n",
-               std::min(99.0, 100 * fitter->Progress()), arguments.output);
+               std::min(99.0, 100 * run.share), arguments.output);
     throw Interrupted{run.signal};
   }
   Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
   const std::string fit_error =
       DescribeFitError(run.twin, data, options.single_precision, options.threads);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  PrintReport(arguments.output, run, fit_error, fitter->Status(), elapsed.count());
+  PrintReport(arguments.output, run, fit_error, elapsed.count());
 }
 
-void AddHierarchyOptions(CLI::App* command, TrainArguments* arguments) {
-  TrainOptions& options = arguments->options;
-  command->add_option("--levels", options.levels, "levels of the twin, level 0 included")
-      ->check(WholeNumberBetween(1, 10))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option("--ratios", options.ratios,
-                   "nodes of levels 1, 2, ... as parts of level 0's particles")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(NumberBetween(0, 1))
-      ->type_name("R[,R...]")
-      ->default_str("0.6,0.4,0.3");
-  AddChoice(command, "--reduction", &options.reduction, kReductionWords,
-            "how nodes are joined to coarser ones");
-  AddChoice(
-      command, "--features", &options.network.features, kFeatureWords,
-      "of nodes, by which the learned reduction joins them: the network's, those of a network "
-      "that does not learn, or positions at rest");
-  TrainOptions::Network& network = options.network;
-  command->add_option("--network-epochs", network.epochs, "of each level; 0: no corrections")
-      ->check(WholeNumberBetween(0, 10000))
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--network-updates", network.updates, "of the network in an epoch (K_model)")
-      ->check(WholeNumberBetween(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option("--contact-updates", network.contact_updates,
-                   "of restitution and friction alone after each epoch (K_col)")
-      ->check(WholeNumberBetween(0, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--latent", network.latent, "features of a node in the network")
-      ->check(WholeNumberBetween(2, 1024))
-      ->type_name("N")
-      ->capture_default_str();
+void AddTwinInputs(CLI::App* command, TrainArguments* arguments) {
   command
       ->add_option("--from", arguments->from,
                    "take level 0 from this twin of the same recordings, instead of fitting it")
       ->type_name("TWIN.npz");
-}
-
-void AddFitOptions(CLI::App* command, TrainArguments* arguments) {
-  TrainOptions& options = arguments->options;
-  AddChoice(command, "--method", &options.method, kMethodWords,
-            "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
-  AddHierarchyOptions(command, arguments);
   command
       ->add_option("--effects", arguments->effects,
                    "give the twin the effects of this one, with their values (full); `physpring "
                    "diagnose` finds them")
       ->type_name("TWIN.npz");
-  command
-      ->add_option("--neighbours", options.neighbours,
-                   "springs of a particle; of several the best on held-back frames (full)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->transform(WholeNumberOrAuto(1000))
-      ->type_name("N[,N...]|auto")
-      ->default_str("auto");
-  AddChoice(command, "--optimizer", &options.optimizer, kOptimizerWords,
-            "of single springs (full)");
-  AddNumberOrAuto(command, "--epochs", &options.epochs, "steps of the last stage");
-  AddNumberOrAuto(command, "--substeps", &options.substeps,
-                  "sub-steps of a frame; auto: as many as are stable");
-  AddPrecision(command, &options.single_precision);
-  AddChoice(command, "--controller-velocity", &options.controller_velocity, kVelocityWords,
-            "whether dashpots feel the controllers' velocity; auto: whatever "
-            "predicts better (full), no (two-stage)");
-  AddChoice(command, "--cone", &options.cone, kConeWords,
-            "of friction on the ground: Coulomb's, or MuJoCo's default; auto: whatever predicts "
-            "better (full), elliptic (two-stage)");
-  command->add_flag("--self-collision", options.self_collision,
-                    "let particles collide with each other (two-stage)");
-  AddSeed(command, &options.seed, "of random numbers");
 }
 
 }  // namespace
@@ -267,7 +197,9 @@ void AddTrainCommand(CLI::App& app) {
       ->required()
       ->check(NotEmpty())
       ->type_name("NAME.twin.npz");
-  AddFitOptions(command, arguments.get());
+  AddTrainFlags(command, &arguments->options);
+  AddTwinInputs(command, arguments.get());
+  AddSeed(command, &arguments->options.seed, "of random numbers");
   arguments->options.threads = AllCores();
   AddThreads(command, &arguments->options.threads, "at most; the result does not depend on it");
   AddResumeOptions(command, &arguments->run, "go on from the output file, if there is one",

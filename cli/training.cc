@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
+#include <optional>
 #include <vector>
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "trainer/parallel.h"
+#include "trainer/train.h"
 #include "twin/evaluate.h"
 
 namespace physpring {
@@ -39,43 +42,93 @@ struct TrackMean {
   }
 };
 
-// To the last part or, if it is another one, to a new one; a step between two parts has no name.
+// To the part of this name; a new one comes last.
 void AddTime(const std::string& part, double seconds,
              std::vector<std::pair<std::string, double>>* parts) {
-  if (part.empty()) return;
-  if (parts->empty() || parts->back().first != part) parts->emplace_back(part, 0);
-  parts->back().second += seconds;
+  const auto same = [&](const auto& one) { return one.first == part; };
+  auto found = std::find_if(parts->begin(), parts->end(), same);
+  if (found == parts->end()) found = parts->emplace(parts->end(), part, 0);
+  found->second += seconds;
 }
+
+// A run in progress: what its journal calls.
+class Running {
+ public:
+  Running(const Checkpoint& checkpoint, double interval, Journal* journal, TrainingRun* run)
+      : checkpoint_(checkpoint), interval_(interval), journal_(*journal), run_(*run) {
+    journal->progress = [this](double share, const std::string& status) { Begin(share, status); };
+    journal->kept = [this](const Journal::Piece& piece) { End(piece); };
+    journal->reached = [this](const Twin& twin) { so_far_ = twin; };
+  }
+
+  void WriteUnfinished() {
+    const Stopwatch writing;
+    run_.twin = checkpoint_.Write(so_far_, journal_);
+    Written(writing.seconds());
+  }
+  void WriteFinished(const Twin& twin) {
+    const Stopwatch writing;
+    run_.twin = checkpoint_.WriteFinished(twin);
+    Written(writing.seconds());
+    run_.parts.emplace_back("writing checkpoints", checkpoint_seconds_);
+  }
+
+ private:
+  // Before a step.
+  void Begin(double share, const std::string& status) {
+    if (interrupt_.signal() != 0) throw Interrupted{interrupt_.signal()};
+    if (!progress_) progress_.emplace(share);
+    progress_->Show(share, status);
+  }
+  // After a step.
+  void End(const Journal::Piece& piece) {
+    AddTime(piece.name, since_step_.seconds(), &run_.parts);
+    run_.share = piece.share;
+    run_.status = piece.status;
+    spdlog::info("{:5.1f} %  {}", 100 * piece.share, piece.status);
+    if (since_checkpoint_.seconds() >= interval_) {
+      WriteUnfinished();
+      since_checkpoint_ = Stopwatch();
+    }
+    since_step_ = Stopwatch();
+  }
+  void Written(double seconds) {
+    checkpoint_seconds_ += seconds;
+    spdlog::info("checkpoint written in {:.2f} s", seconds);
+  }
+
+  const InterruptWatch interrupt_;
+  const Checkpoint& checkpoint_;
+  double interval_;
+  Journal& journal_;
+  TrainingRun& run_;
+  Twin so_far_;
+  std::optional<Progress> progress_;  // from the first step on that is not in the checkpoint
+  Stopwatch since_step_, since_checkpoint_;
+  double checkpoint_seconds_ = 0;
+};
 
 }  // namespace
 
-TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double interval) {
-  const InterruptWatch interrupt;
-  Progress progress(fitter->Progress());
+TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
+                        double interval) {
+  Journal journal;
   TrainingRun run;
-  double checkpoint_seconds = 0;
-  const auto write = [&] {
-    const Stopwatch writing;
-    run.twin = checkpoint.Write(*fitter, run.finished);
-    checkpoint_seconds += writing.seconds();
-    spdlog::info("checkpoint written in {:.2f} s", writing.seconds());
-  };
-  Stopwatch since_checkpoint;
-  while (!run.finished && interrupt.signal() == 0) {
-    const Stopwatch step;
-    const std::string part = fitter->Part();
-    run.finished = !fitter->Step();
-    if (run.finished) break;
-    AddTime(part, step.seconds(), &run.parts);
-    spdlog::info("{:5.1f} %  {}", 100 * fitter->Progress(), fitter->Status());
-    progress.Show(fitter->Progress(), fitter->Status());
-    if (since_checkpoint.seconds() < interval) continue;
-    write();
-    since_checkpoint = Stopwatch();
+  if (resume) {
+    const std::optional<Twin> before = checkpoint.Resume(&journal);
+    if (before && IsFinished(*before)) {
+      run.twin = *before;
+      return run;
+    }
   }
-  run.signal = interrupt.signal();
-  write();
-  run.parts.emplace_back("writing checkpoints", checkpoint_seconds);
+  Running running(checkpoint, interval, &journal, &run);
+  try {
+    const Work work(&journal, checkpoint.Key());
+    running.WriteFinished(Train(task.data, task.options, task.dense, work));
+  } catch (const Interrupted& stop) {
+    run.signal = stop.signal;
+    running.WriteUnfinished();
+  }
   return run;
 }
 

@@ -1,31 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training run: steps of a fit with progress, log and checkpoints, until it is done or a signal
-// asks it to stop.
+// A training run, with progress, log and checkpoints, until it is done or a signal asks it to stop.
 #ifndef PHYSPRING_CLI_TRAINING_H_
 #define PHYSPRING_CLI_TRAINING_H_
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/checkpoint.h"
-#include "trainer/fitter.h"
+#include "trainer/fit_data.h"
+#include "trainer/train_options.h"
 #include "twin/twin.h"
 
 namespace physpring {
 
+struct TrainingTask {
+  FitData data;
+  TrainOptions options;
+  std::optional<Twin> dense;  // level 0, where it is not fitted
+};
+
 struct TrainingRun {
-  Twin twin;              // as written
-  bool finished = false;  // else a signal came first
-  int signal = 0;         // that came
-  // Where the time went: Fitter::Part and seconds, in the order of their first step; the last one
-  // is writing checkpoints.
+  Twin twin;           // as written
+  int signal = 0;      // that stopped it; 0: it is finished
+  double share = 0;    // of the work that is done
+  std::string status;  // of the last step
+  // Where the time went: parts and seconds, in the order of their first step; the last one is
+  // writing checkpoints.
   std::vector<std::pair<std::string, double>> parts;
 };
 
-// Writes `checkpoint` at most every `interval` seconds, and at the end. Each step and checkpoint is
-// a line of the log (spdlog's default logger).
-TrainingRun RunTraining(Fitter* fitter, const Checkpoint& checkpoint, double interval);
+// Writes `checkpoint` at most every `interval` seconds, and at the end. Goes on from it if
+// `resume`. Each step and checkpoint is a line of the log (spdlog's default logger).
+TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
+                        double interval);
 
 // How far the twin is from the fit frames of its recordings, next to a body that does not move; one
 // line. Throws Error if it diverges.

@@ -16,6 +16,12 @@ struct Adam {
   explicit Adam(Eigen::Index size)
       : mean(Eigen::VectorXd::Zero(size)), mean_square(Eigen::VectorXd::Zero(size)) {}
 
+  // What a journal keeps (journal/packing.h).
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(steps, mean, mean_square);
+  }
+
   // values <- values - rate * mean / sqrt(mean_square), bias-corrected. An entry that never had a
   // gradient does not move.
   void Step(const Eigen::VectorXd& gradient, const Eigen::VectorXd& rate, Eigen::VectorXd* values) {

@@ -163,30 +163,4 @@ void CmaEs::Tell(const std::vector<double>& objective) {
   state_.step_size *= std::exp(c.c_sigma / c.d_sigma * (length / c.chi - 1));
 }
 
-void CmaEs::Save(StateArrays* arrays) const {
-  (*arrays)["train/search_generation"] = StoreCounters({state_.generation});
-  (*arrays)["train/search_scalars"] =
-      StoreVector(Eigen::Vector2d(state_.step_size, state_.best_objective));
-  (*arrays)["train/search_mean"] = StoreVector(state_.mean);
-  (*arrays)["train/search_covariance"] = StoreVector(state_.covariance.reshaped());
-  (*arrays)["train/search_step_path"] = StoreVector(state_.step_path);
-  (*arrays)["train/search_path"] = StoreVector(state_.path);
-  (*arrays)["train/search_best"] = StoreVector(state_.best);
-}
-
-void CmaEs::Load(const StateArrays& arrays) {
-  const Eigen::Index n = state_.mean.size();
-  const Eigen::VectorXd scalars = LoadVector(arrays, "search_scalars", 2);
-  CmaEsState state;
-  state.generation = LoadCounters(arrays, "search_generation", 1)[0];
-  state.step_size = scalars[0];
-  state.best_objective = scalars[1];
-  state.mean = LoadVector(arrays, "search_mean", n);
-  state.covariance = LoadVector(arrays, "search_covariance", n * n).reshaped(n, n);
-  state.step_path = LoadVector(arrays, "search_step_path", n);
-  state.path = LoadVector(arrays, "search_path", n);
-  state.best = LoadVector(arrays, "search_best", n);
-  state_ = std::move(state);
-}
-
 }  // namespace physpring

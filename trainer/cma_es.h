@@ -14,8 +14,6 @@
 #include <limits>
 #include <vector>
 
-#include "trainer/state_arrays.h"
-
 namespace physpring {
 
 // All that the next generation depends on, besides seed and population. n variables.
@@ -28,6 +26,11 @@ struct CmaEsState {
   Eigen::VectorXd path;        // p_c (n)
   Eigen::VectorXd best;        // (n) in the cube: of all that were told; at first the start
   double best_objective = std::numeric_limits<double>::infinity();
+
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(generation, step_size, mean, covariance, step_path, path, best, best_objective);
+  }
 };
 
 class CmaEs {
@@ -50,9 +53,11 @@ class CmaEs {
 
   const CmaEsState& state() const { return state_; }
 
-  // Adds to, and reads from, the arrays of a fit. Load throws Error if they do not belong to it.
-  void Save(StateArrays* arrays) const;
-  void Load(const StateArrays& arrays);
+  // What a journal keeps (journal/packing.h).
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(state_);
+  }
 
  private:
   std::vector<Eigen::VectorXd> Sample() const;  // before the fold

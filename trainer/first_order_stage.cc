@@ -132,28 +132,4 @@ void FirstOrderStage::Pass(const std::vector<Recording>& recordings, const Rollo
   }
 }
 
-void FirstOrderStage::Save(StateArrays* state) const {
-  (*state)["train/values"] = StoreVector(values_);
-  (*state)["train/adam_mean"] = StoreVector(adam_.mean);
-  (*state)["train/adam_mean_square"] = StoreVector(adam_.mean_square);
-  (*state)["train/passes"] = StoreCounters({passes_, diverged_, adam_.steps});
-  (*state)["train/best_values"] = StoreVector(best_);
-  (*state)["train/losses"] = StoreVector(Eigen::Vector2d(last_loss_, best_loss_));
-}
-
-void FirstOrderStage::Load(const StateArrays& state) {
-  const Eigen::Index size = values_.size();
-  values_ = LoadVector(state, "values", size);
-  adam_.mean = LoadVector(state, "adam_mean", size);
-  adam_.mean_square = LoadVector(state, "adam_mean_square", size);
-  const std::vector<int> counters = LoadCounters(state, "passes", 3);
-  passes_ = counters[0];
-  diverged_ = counters[1] != 0;
-  adam_.steps = counters[2];
-  best_ = LoadVector(state, "best_values", size);
-  const Eigen::VectorXd losses = LoadVector(state, "losses", 2);
-  last_loss_ = losses[0];
-  best_loss_ = losses[1];
-}
-
 }  // namespace physpring

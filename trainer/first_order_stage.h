@@ -11,7 +11,6 @@
 
 #include "trainer/adam.h"
 #include "trainer/rollout.h"
-#include "trainer/state_arrays.h"
 #include "twin/recording.h"
 #include "twin/simulator.h"
 
@@ -26,6 +25,8 @@ class FirstOrderStage {
   // Whether the last pass is done, or one diverged.
   bool done() const { return diverged_ || passes_ == most_passes_; }
   int passes() const { return passes_; }
+  int steps() const { return adam_.steps; }                  // of Adam, a frame each
+  const Eigen::VectorXd& values() const { return values_; }  // ln Y of each spring, then contact's
   bool diverged() const { return diverged_; }
   double last_loss() const { return last_loss_; }  // of the last pass, mean over frames, m^2
 
@@ -39,9 +40,11 @@ class FirstOrderStage {
   SpringMassSystem Best() const { return With(best_); }
   double best_loss() const { return best_loss_; }
 
-  // Adds to, and reads from, the arrays of a fit. Load throws Error if they do not belong to it.
-  void Save(StateArrays* state) const;
-  void Load(const StateArrays& state);
+  // What a journal keeps (journal/packing.h).
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(values_, adam_, passes_, diverged_, last_loss_, best_, best_loss_);
+  }
 
  private:
   SpringMassSystem With(const Eigen::VectorXd& values) const;

@@ -4,10 +4,17 @@
 
 #include <vector>
 
-#include "trainer/fitter.h"
 #include "twin/dataset.h"
+#include "twin/recording.h"
 
 namespace physpring {
+
+// Recordings of one object to fit; all with the same numbers of points, interior and controllers.
+struct FitData {
+  std::vector<Recording> recordings;
+  std::vector<int>
+      continuous_recording;  // of each: recordings cut from the same run share a number
+};
 
 // Reads the recordings that are listed (dataset.h). Those of which nothing is said count as
 // continuous recordings of their own. Throws Error if one cannot be read or sees nothing after

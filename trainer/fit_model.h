@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "trainer/fitter.h"
+#include "trainer/fit_data.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/parameters.h"

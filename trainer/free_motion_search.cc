@@ -65,18 +65,4 @@ void FreeMotionSearch::Step(const ChosenModel& model, const std::vector<Episode>
   }
 }
 
-void FreeMotionSearch::Save(StateArrays* arrays) const {
-  search_.Save(arrays);
-  (*arrays)["train/search_start"] = StoreVector(start_);
-  (*arrays)["train/search_gained"] = StoreVector(Eigen::VectorXd::Constant(1, gained_error_));
-  (*arrays)["train/search_slow"] = StoreCounters({slow_});
-}
-
-void FreeMotionSearch::Load(const StateArrays& arrays) {
-  search_.Load(arrays);
-  start_ = LoadVector(arrays, "search_start", start_.size());
-  gained_error_ = LoadVector(arrays, "search_gained", 1)[0];
-  slow_ = LoadCounters(arrays, "search_slow", 1)[0];
-}
-
 }  // namespace physpring

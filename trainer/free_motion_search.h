@@ -32,9 +32,11 @@ class FreeMotionSearch {
   Eigen::VectorXd BestFactors() const { return FactorsAt(search_.state().best); }
   double best_error() const { return search_.state().best_objective; }  // m
 
-  // Adds to, and reads from, the arrays of a fit. Load throws Error if they do not belong to it.
-  void Save(StateArrays* arrays) const;
-  void Load(const StateArrays& arrays);
+  // What a journal keeps (journal/packing.h).
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(start_, search_, gained_error_, slow_);
+  }
 
  private:
   Eigen::VectorXd FactorsAt(const Eigen::VectorXd& point) const;

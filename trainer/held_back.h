@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "trainer/fitter.h"
+#include "trainer/fit_data.h"
 #include "trainer/rollout.h"
 #include "trainer/track_error.h"
 

@@ -30,10 +30,16 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   }
 }
 
-void ParallelFirst(const std::vector<int>& items, int threads,
-                   const std::function<void(int, int)>& work) {
-  const int count = std::min(threads, static_cast<int>(items.size()));
-  ParallelFor(count, count, [&](int i) { work(items[i], threads / count); });
+void ParallelShared(int count, int threads,
+                    const std::function<void(int, const std::function<int()>&)>& work) {
+  std::atomic<int> left{count};
+  const std::function<int()> share = [&] {
+    return threads / std::max(1, std::min(threads, left.load()));
+  };
+  ParallelFor(count, threads, [&](int i) {
+    work(i, share);
+    --left;
+  });
 }
 
 }  // namespace physpring

@@ -12,10 +12,10 @@ namespace physpring {
 // their own do not depend on the number of threads.
 void ParallelFor(int count, int threads, const std::function<void(int)>& work);
 
-// Calls work(item, share) at the same time for the first of `items`, as many as there are threads,
-// each with its share of the threads. Needs an item.
-void ParallelFirst(const std::vector<int>& items, int threads,
-                   const std::function<void(int, int)>& work);
+// The same, for work that can use several threads itself: work(i, share), where share() tells how
+// many threads this call may use now. It grows as other calls end.
+void ParallelShared(int count, int threads,
+                    const std::function<void(int, const std::function<int()>&)>& work);
 
 }  // namespace physpring
 

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trainer/cma_es.h"
+#include "trainer/first_order_stage.h"
 #include "trainer/loss.h"
 #include "trainer/parallel.h"
 #include "trainer/phystwin_variables.h"
+#include "trainer/rollout.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -38,14 +41,49 @@ bool JoinsNoController(const SpringMassSystem& system) {
          static_cast<int>(system.UnjoinedControllers().size()) == system.controllers;
 }
 
-}  // namespace
+// The search in the unit cube, in the middle of a generation.
+struct Search {
+  CmaEs cma_es;
+  std::vector<double> objectives;  // of this generation's candidates, as far as known
 
-TwoStageFit::TwoStageFit(FitData data, const TrainOptions& options)
-    : data_(std::move(data)),
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(cma_es, objectives);
+  }
+};
+
+// What is fitted, and how.
+class TwoStage {
+ public:
+  TwoStage(const FitData& data, const TrainOptions& options);
+
+  // As many candidates of a generation as there are threads.
+  StepReport StepSearch(Search* search) const;
+  // One pass of the second stage, after a search that ended with `best` (of the unit cube).
+  StepReport StepFirstOrder(const CmaEsState& searched, FirstOrderStage* stage) const;
+
+  SpringMassSystem SystemAt(const Eigen::VectorXd& point) const;  // of the unit cube
+  Twin TwinOf(const SpringMassSystem& system) const;
+  int passes() const { return passes_; }
+
+ private:
+  void ExpectSomeSuccess(const CmaEsState& search) const;
+  std::vector<double> Objectives(const std::vector<Eigen::VectorXd>& points) const;
+  int Substeps(const SpringMassSystem& system) const;  // of a frame
+  RolloutOptions RolloutOptionsFor(const SpringMassSystem& system) const;
+  std::string DescribeBest(const CmaEsState& searched, const FirstOrderStage& stage) const;
+
+  const FitData& data_;
+  const TrainOptions& options_;
+  double length_scale_;
+  int passes_;  // of the second stage
+};
+
+TwoStage::TwoStage(const FitData& data, const TrainOptions& options)
+    : data_(data),
       options_(options),
       length_scale_(PhysTwinLengthScale(data_.recordings.at(0))),
-      passes_(options.epochs > 0 ? options.epochs : PhysTwinPasses(data_.recordings[0])),
-      search_(PhysTwinStart(), kStepSize, options.seed) {
+      passes_(options.epochs > 0 ? options.epochs : PhysTwinPasses(data_.recordings[0])) {
   // the widest search; throws where the recording gives no body
   const Eigen::VectorXd widest = Eigen::VectorXd::Ones(kPhysTwinVariables);
   if (!JoinsNoController(SystemAt(widest))) return;
@@ -55,19 +93,19 @@ TwoStageFit::TwoStageFit(FitData data, const TrainOptions& options)
                   data_.recordings[0].name, FromUnitCube(widest, length_scale_).controller_radius));
 }
 
-SpringMassSystem TwoStageFit::SystemAt(const Eigen::VectorXd& point) const {
+SpringMassSystem TwoStage::SystemAt(const Eigen::VectorXd& point) const {
   SpringMassSystem system = MakePhysTwinSystem(
       data_.recordings[0], FromUnitCube(point, length_scale_), options_.self_collision);
   if (options_.cone) system.contact.cone = *options_.cone;
   return system;
 }
 
-int TwoStageFit::Substeps(const SpringMassSystem& system) const {
+int TwoStage::Substeps(const SpringMassSystem& system) const {
   if (options_.substeps > 0) return options_.substeps;
   return StableSubsteps(ComputeStabilityBound(system), 1 / data_.recordings[0].fps, kStepSafety);
 }
 
-RolloutOptions TwoStageFit::RolloutOptionsFor(const SpringMassSystem& system) const {
+RolloutOptions TwoStage::RolloutOptionsFor(const SpringMassSystem& system) const {
   RolloutOptions options;
   options.single_precision = options_.single_precision;
   options.controller_velocity = options_.controller_velocity.value_or(false);
@@ -77,7 +115,7 @@ RolloutOptions TwoStageFit::RolloutOptionsFor(const SpringMassSystem& system) co
 
 // A candidate that joins no controller, would diverge with PhysTwin's sub-step, or diverges with
 // ours, has failed.
-std::vector<double> TwoStageFit::Objectives(const std::vector<Eigen::VectorXd>& points) const {
+std::vector<double> TwoStage::Objectives(const std::vector<Eigen::VectorXd>& points) const {
   const int recordings = static_cast<int>(data_.recordings.size());
   const int candidates = static_cast<int>(points.size());
   std::vector<SpringMassSystem> systems(candidates);
@@ -106,104 +144,66 @@ std::vector<double> TwoStageFit::Objectives(const std::vector<Eigen::VectorXd>& 
   return objectives;
 }
 
-void TwoStageFit::ExpectSomeSuccess() const {
-  if (search_.state().best_objective < kFailed) return;
+void TwoStage::ExpectSomeSuccess(const CmaEsState& search) const {
+  if (search.best_objective < kFailed) return;
   throw Error(fmt::format(
       "recording {}: the motion diverges with every start value tried{}", data_.recordings[0].name,
       options_.substeps > 0 ? fmt::format("; {} sub-steps a frame are too few", options_.substeps)
                             : ", even with a stable sub-step; are its positions in metres?"));
 }
 
-void TwoStageFit::StepSearch() {
-  const std::vector<Eigen::VectorXd> points = search_.Ask();
-  const auto first = points.begin() + static_cast<std::ptrdiff_t>(objectives_.size());
+StepReport TwoStage::StepSearch(Search* search) const {
+  std::vector<double>& objectives = search->objectives;
+  const std::vector<Eigen::VectorXd> points = search->cma_es.Ask();
+  const auto first = points.begin() + static_cast<std::ptrdiff_t>(objectives.size());
   const std::ptrdiff_t count = std::min<std::ptrdiff_t>(options_.threads, points.end() - first);
-  for (double objective : Objectives({first, first + count})) objectives_.push_back(objective);
+  for (double objective : Objectives({first, first + count})) objectives.push_back(objective);
 
-  const int generation = search_.state().generation + 1;
-  const double least = *std::min_element(objectives_.begin(), objectives_.end());
-  status_ = fmt::format("search, generation {} of {}, candidate {} of {}: loss {:.3e} m^2",
-                        generation, kGenerations, objectives_.size(), points.size(),
-                        std::min(least, search_.state().best_objective));
-  if (objectives_.size() < points.size()) return;
-  search_.Tell(objectives_);
-  objectives_.clear();
-  ExpectSomeSuccess();
-  if (generation == kGenerations) BeginFirstOrder();
+  const int generation = search->cma_es.state().generation + 1;
+  const double least = *std::min_element(objectives.begin(), objectives.end());
+  const double of_generation =
+      static_cast<double>(objectives.size()) / static_cast<double>(points.size());
+  StepReport report{false, (generation - 1 + of_generation) / kGenerations,
+                    fmt::format("search, generation {} of {}, candidate {} of {}: loss {:.3e} m^2",
+                                generation, kGenerations, objectives.size(), points.size(),
+                                std::min(least, search->cma_es.state().best_objective))};
+  if (objectives.size() < points.size()) return report;
+  search->cma_es.Tell(objectives);
+  objectives.clear();
+  ExpectSomeSuccess(search->cma_es.state());
+  report.done = generation == kGenerations;
+  return report;
 }
 
-void TwoStageFit::BeginFirstOrder() {
-  first_order_.emplace(SystemAt(search_.state().best), passes_);
+StepReport TwoStage::StepFirstOrder(const CmaEsState& searched, FirstOrderStage* stage) const {
+  stage->Pass(data_.recordings, RolloutOptionsFor(stage->Current()), options_.threads);
+  StepReport report{stage->done(), static_cast<double>(stage->passes()) / passes_,
+                    fmt::format("single springs, pass {} of {}: loss {:.3e} m^2", stage->passes(),
+                                passes_, stage->last_loss())};
+  if (stage->diverged()) {
+    report.status = fmt::format("single springs, pass {} diverged; {}", stage->passes() + 1,
+                                DescribeBest(searched, *stage));
+  } else if (stage->done()) {
+    report.status = DescribeBest(searched, *stage);
+  }
+  return report;
 }
 
-void TwoStageFit::StepFirstOrder() {
-  first_order_->Pass(data_.recordings, RolloutOptionsFor(first_order_->Current()),
-                     options_.threads);
-  status_ = first_order_->diverged()
-                ? fmt::format("single springs, pass {} diverged; {}", first_order_->passes() + 1,
-                              DescribeBest())
-                : fmt::format("single springs, pass {} of {}: loss {:.3e} m^2",
-                              first_order_->passes(), passes_, first_order_->last_loss());
-  if (first_order_->done() && !first_order_->diverged()) status_ = DescribeBest();
-}
-
-std::string TwoStageFit::DescribeBest() const {
-  const PhysTwinVariables best = FromUnitCube(search_.state().best, length_scale_);
+std::string TwoStage::DescribeBest(const CmaEsState& searched, const FirstOrderStage& stage) const {
+  const PhysTwinVariables best = FromUnitCube(searched.best, length_scale_);
   return fmt::format(
       "search: Y {:.3g} N, {} neighbours within {:.3g} mm, of controllers {} within {:.3g} mm, "
       "drag {:.3g} 1/s, dashpot {:.3g} 1/s, loss {:.3e} m^2; single springs: loss {:.3e} m^2",
       best.spring_y, best.object_neighbours - 1, 1e3 * best.object_radius,
       best.controller_neighbours, 1e3 * best.controller_radius, best.drag, best.dashpot,
-      search_.state().best_objective, first_order_->best_loss());
+      searched.best_objective, stage.best_loss());
 }
 
-bool TwoStageFit::Step() {
-  if (!first_order_) {
-    StepSearch();
-  } else if (!first_order_->done()) {
-    StepFirstOrder();
-  } else {
-    return false;
-  }
-  return true;
-}
-
-double TwoStageFit::Progress() const {
-  if (first_order_ && first_order_->done()) return 1;
-  const double searched =
-      search_.state().generation * search_.population() + static_cast<double>(objectives_.size());
-  const double passed = first_order_ ? first_order_->passes() : 0;
-  const double all = kGenerations * search_.population() + kPassRollouts * passes_;
-  return (searched + kPassRollouts * passed) / all;
-}
-
-std::map<std::string, NpzArray> TwoStageFit::Save() const {
-  StateArrays state = {
-      {"train/objectives", NpzArray::Doubles({objectives_.size()}, objectives_.data())},
-      {"train/objective_count", StoreCounters({static_cast<int>(objectives_.size())})},
-  };
-  search_.Save(&state);
-  if (first_order_) first_order_->Save(&state);
-  return state;
-}
-
-void TwoStageFit::Load(const std::map<std::string, NpzArray>& state) {
-  search_.Load(state);
-  const int count = LoadCounters(state, "objective_count", 1)[0];
-  const Eigen::VectorXd objectives = LoadVector(state, "objectives", count);
-  objectives_.assign(objectives.begin(), objectives.end());
-  first_order_.reset();
-  if (search_.state().generation < kGenerations) return;
-  BeginFirstOrder();
-  first_order_->Load(state);
-  if (first_order_->done()) status_ = DescribeBest();
-}
-
-Twin TwoStageFit::Result() const {
+Twin TwoStage::TwinOf(const SpringMassSystem& system) const {
   const Recording& recording = data_.recordings[0];
   Twin twin;
   TwinLevel& level = twin.levels.emplace_back();
-  level.system = first_order_ ? first_order_->Best() : SystemAt(search_.state().best);
+  level.system = system;
   level.substeps_per_second =
       static_cast<int>(std::ceil(Substeps(level.system) * recording.fps - 1e-9));
   twin.points = recording.point_count();
@@ -214,6 +214,29 @@ Twin TwoStageFit::Result() const {
   twin.gravity = recording.gravity;
   twin.seed = options_.seed;
   return twin;
+}
+
+}  // namespace
+
+Twin FitTwoStage(const FitData& data, const TrainOptions& options, const Work& work) {
+  const TwoStage fit(data, options);
+  const CmaEs start(PhysTwinStart(), kStepSize, options.seed);
+  work.Reached(fit.TwinOf(fit.SystemAt(start.state().best)));
+
+  const double searching = kGenerations * start.population();
+  const double searched_part = searching / (searching + kPassRollouts * fit.passes());
+  const CmaEsState searched =
+      work.Part("search", 0, searched_part)
+          .Follow(Search{start, {}}, [&](Search* one) { return fit.StepSearch(one); })
+          .cma_es.state();
+  const SpringMassSystem best = fit.SystemAt(searched.best);
+  work.Reached(fit.TwinOf(best));
+
+  const FirstOrderStage springs =
+      work.Part("single springs", searched_part, 1)
+          .Follow(FirstOrderStage(best, fit.passes()),
+                  [&](FirstOrderStage* one) { return fit.StepFirstOrder(searched, one); });
+  return fit.TwinOf(springs.Best());
 }
 
 }  // namespace physpring

@@ -16,56 +16,16 @@
 #ifndef PHYSPRING_TRAINER_TWO_STAGE_H_
 #define PHYSPRING_TRAINER_TWO_STAGE_H_
 
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "trainer/cma_es.h"
-#include "trainer/first_order_stage.h"
-#include "trainer/fitter.h"
-#include "trainer/rollout.h"
+#include "trainer/fit_data.h"
+#include "trainer/journal/work.h"
 #include "trainer/train_options.h"
+#include "twin/twin.h"
 
 namespace physpring {
 
-class TwoStageFit : public Fitter {
- public:
-  // Throws Error where the recordings give no connected body, or one that no controller can move.
-  TwoStageFit(FitData data, const TrainOptions& options);
-
-  // As many candidates of a generation as there are threads, or one pass of the second stage.
-  // Throws Error if no candidate of the first generation can be simulated.
-  bool Step() override;
-
-  double Progress() const override;
-  std::string Status() const override { return status_; }
-  std::map<std::string, NpzArray> Save() const override;
-  void Load(const std::map<std::string, NpzArray>& state) override;
-  Twin Result() const override;
-
- private:
-  void StepSearch();
-  void StepFirstOrder();
-  void BeginFirstOrder();
-  void ExpectSomeSuccess() const;
-
-  SpringMassSystem SystemAt(const Eigen::VectorXd& point) const;  // of the unit cube
-  std::vector<double> Objectives(const std::vector<Eigen::VectorXd>& points) const;
-  int Substeps(const SpringMassSystem& system) const;  // a frame
-  RolloutOptions RolloutOptionsFor(const SpringMassSystem& system) const;
-  std::string DescribeBest() const;
-
-  FitData data_;
-  TrainOptions options_;
-  double length_scale_;
-  int passes_;  // of the second stage
-
-  CmaEs search_;
-  std::vector<double> objectives_;  // of this generation's candidates, as far as known
-  std::optional<FirstOrderStage> first_order_;
-  std::string status_;
-};
+// Throws Error where the recordings give no connected body, or one that no controller can move, or
+// if no candidate of the first generation can be simulated.
+Twin FitTwoStage(const FitData& data, const TrainOptions& options, const Work& work);
 
 }  // namespace physpring
 

@@ -241,7 +241,7 @@ TEST_F(Train, ResumesOnlyWhatWasTrainedTheSameWay) {
   fails({"--precision", "float"}, ": was trained with precision \"double\", not \"float\"");
   fails({"--method", "full"}, ": was trained with method \"two-stage\", not \"full\"");
   Twin twin = ReadTwin(twin_);
-  ASSERT_EQ(twin.training_state.erase("train/version"), 1U);
+  ASSERT_EQ(twin.training_state.erase("train/code"), 1U);
   WriteTwin(twin, twin_);
   fails({}, twin_ + ": its training was begun by another version of physpring");
   WriteRecording(MovingRope(8, 11), other_);

@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 
+#include "trainer/journal/packing.h"
+
 namespace physpring {
 namespace {
 
@@ -134,9 +136,7 @@ TEST(CmaEs, IsUnmovedByAMonotoneChangeOfTheObjective) {
 TEST(CmaEs, GoesOnFromASavedState) {
   CmaEs whole = Search(Constant(4, 0.5), 12, 20, Rosenbrock);
   CmaEs resumed(Constant(4, 0.1), 1, 12);
-  StateArrays saved;
-  Search(Constant(4, 0.5), 12, 13, Rosenbrock).Save(&saved);
-  resumed.Load(saved);
+  Unpack(Pack(Search(Constant(4, 0.5), 12, 13, Rosenbrock)), &resumed);
   for (int i = 13; i < 20; ++i) resumed.Tell(Values(resumed.Ask(), Rosenbrock));
   EXPECT_EQ(whole.Ask(), resumed.Ask());
   EXPECT_EQ(whole.state().best, resumed.state().best);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/swung_rope.h"
+#include "trainer/journal/packing.h"
 #include "trainer/phystwin_variables.h"
 
 namespace physpring {
@@ -30,18 +31,6 @@ Recording StifferRope(int frames) {
   return recording;
 }
 
-StateArrays StateOf(const FirstOrderStage& stage) {
-  StateArrays state;
-  stage.Save(&state);
-  return state;
-}
-
-bool SameBits(const StateArrays& a, const StateArrays& b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](auto& x, auto& y) {
-           return x.first == y.first && x.second.data == y.second.data;
-         });
-}
-
 TEST(FirstOrderStage, StartsFromTheGivenSystem) {
   const SpringMassSystem system = System(SwungRope(8, 2));
   const FirstOrderStage stage(system, 10);
@@ -64,7 +53,7 @@ TEST(FirstOrderStage, StepsOnceAFrame) {
   const Recording recording = StifferRope(5);
   FirstOrderStage stage(System(recording), 10);
   stage.Pass({recording}, kOptions, 1);
-  EXPECT_EQ(StateOf(stage).at("train/passes").ToInts()[2], 4);
+  EXPECT_EQ(stage.steps(), 4);
   // a step of Adam is about as long as its rate, 0.001, where the gradient keeps its sign
   const Eigen::ArrayXd change =
       (stage.Current().stiffness.array() / System(recording).stiffness.array()).log();
@@ -94,8 +83,7 @@ TEST(FirstOrderStage, LeavesAParameterBeyondItsClampWhereItIs) {
   stage.Pass({recording}, {.substeps = 600}, 1);
   ASSERT_FALSE(stage.diverged());
   EXPECT_DOUBLE_EQ(stage.Current().stiffness[0], at_limit);
-  const NpzArray values = StateOf(stage).at("train/values");
-  EXPECT_DOUBLE_EQ(values.ToDoubles()[0], std::log(2 * kPhysTwinLargestY));
+  EXPECT_DOUBLE_EQ(stage.values()[0], std::log(2 * kPhysTwinLargestY));
 }
 
 TEST(FirstOrderStage, WalksAlongRecordingsOfDifferentLength) {
@@ -103,8 +91,7 @@ TEST(FirstOrderStage, WalksAlongRecordingsOfDifferentLength) {
   Recording other = StifferRope(4);
   FirstOrderStage stage(System(one), 3);
   stage.Pass({one, other, one}, kOptions, 1);
-  const int steps = StateOf(stage).at("train/passes").ToInts()[2];
-  EXPECT_EQ(steps, 7);
+  EXPECT_EQ(stage.steps(), 7);
 }
 
 TEST(FirstOrderStage, GivesTheSameBitsForAnyNumberOfThreads) {
@@ -114,7 +101,7 @@ TEST(FirstOrderStage, GivesTheSameBitsForAnyNumberOfThreads) {
     one.Pass(recordings, kOptions, 1);
     three.Pass(recordings, kOptions, 3);
   }
-  EXPECT_TRUE(SameBits(StateOf(one), StateOf(three)));
+  EXPECT_EQ(Pack(one), Pack(three));
 }
 
 TEST(FirstOrderStage, EndsWhenAPassDiverges) {

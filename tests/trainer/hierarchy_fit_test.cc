@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <algorithm>
 
+#include "tests/support/interrupted_work.h"
+#include "tests/support/same_twin.h"
 #include "tests/support/small_twin.h"
-#include "trainer/finished_fit.h"
+#include "trainer/reduction/galerkin.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
 
@@ -32,45 +34,18 @@ struct Case {
     options.network.latent = 4;
     options.network.epochs = 2;
   }
-  HierarchyFit Fit() const {
-    return HierarchyFit(data, options, std::make_unique<FinishedFit>(dense));
+  Twin Fit(const Work& work) const { return FitHierarchy(dense, data, options, work); }
+  Twin Fit() const {
+    return RunToTheEnd([this](const Work& work) { return Fit(work); });
   }
 };
-
-Twin RunToTheEnd(HierarchyFit* fit) {
-  while (fit->Step()) {
-  }
-  return fit->Result();
-}
-
-void ExpectSameSystem(const SpringMassSystem& a, const SpringMassSystem& b) {
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.springs, b.springs);
-  EXPECT_EQ(a.stiffness, b.stiffness);
-  EXPECT_EQ(a.rest_length, b.rest_length);
-  EXPECT_EQ(a.dashpot, b.dashpot);
-  EXPECT_EQ(a.drag, b.drag);
-  EXPECT_EQ(a.contact.restitution, b.contact.restitution);
-  EXPECT_EQ(a.contact.friction, b.contact.friction);
-}
-
-void ExpectSameTwin(const Twin& a, const Twin& b) {
-  ASSERT_EQ(a.levels.size(), b.levels.size());
-  for (std::size_t l = 0; l < a.levels.size(); ++l) {
-    SCOPED_TRACE(l);
-    EXPECT_EQ(a.levels[l].assignment, b.levels[l].assignment);
-    EXPECT_EQ(a.levels[l].substeps_per_second, b.levels[l].substeps_per_second);
-    ExpectSameSystem(a.levels[l].system, b.levels[l].system);
-  }
-}
 
 TEST(HierarchyFit, MakesLevelsOfTheRatiosWithTheSameMass) {
   for (Reduction reduction :
        {Reduction::kLearned, Reduction::kRandom, Reduction::kGramian, Reduction::kKMeans}) {
     Case c;
     c.options.reduction = reduction;
-    HierarchyFit fit = c.Fit();
-    const Twin twin = RunToTheEnd(&fit);
+    const Twin twin = c.Fit();
     ASSERT_EQ(twin.levels.size(), 3u);
     EXPECT_EQ(twin.levels[1].system.node_count(), 20);
     EXPECT_EQ(twin.levels[2].system.node_count(), 10);
@@ -81,7 +56,6 @@ TEST(HierarchyFit, MakesLevelsOfTheRatiosWithTheSameMass) {
       EXPECT_NEAR(system.mass.sum(), c.dense.levels[0].system.mass.sum(), 1e-15);
       EXPECT_LE(twin.levels[level].substeps_per_second, 3000);
     }
-    EXPECT_EQ(fit.Progress(), 1);
   }
 }
 
@@ -90,71 +64,72 @@ TEST(HierarchyFit, FitsTheParametersOfALevel) {
   Case c;
   c.options.levels = 2;
   c.options.reduction = Reduction::kKMeans;
-  HierarchyFit fit = c.Fit();
-  fit.Step();  // level 0
-  fit.Step();  // the projection
   const auto error = [&](const Twin& twin) {
     const RecordingResult result = Evaluate(twin, c.data.recordings[0], {});
     return *MeansOverFrames(result.levels[1].lifted, 1, 8).track.value;
   };
-  const double projected = error(fit.Result());
-  EXPECT_LT(error(RunToTheEnd(&fit)), 0.7 * projected);
+  const Twin fitted = c.Fit();
+  Twin projected = fitted;
+  projected.levels[1].system =
+      Project(c.dense.levels[0].system, fitted.levels[1].assignment, Eigen::Vector3d::UnitZ())
+          .system;
+  EXPECT_LT(error(fitted), 0.7 * error(projected));
 }
 
-TEST(HierarchyFit, ResumedAnywhereGivesTheSameBits) {
+TEST(HierarchyFit, StoppedAnywhereGivesTheSameBits) {
   const Case c;
-  HierarchyFit whole = c.Fit();
-  const Twin expected = RunToTheEnd(&whole);
-  HierarchyFit first = c.Fit();
-  bool more = true;
-  for (int steps = 0; more; ++steps) {
-    more = first.Step();
-    if (steps % 31 != 3) continue;  // topology, trials, network, springs of both levels
-    HierarchyFit second = c.Fit();
-    second.Load(first.Save());
-    SCOPED_TRACE(first.Status());
-    EXPECT_EQ(second.Progress(), first.Progress());
-    ExpectSameTwin(RunToTheEnd(&second), expected);
+  const Twin whole = c.Fit();
+  const auto fit = [&](const Work& work) { return c.Fit(work); };
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 3, &stops), whole);
+  EXPECT_GT(stops, 20);
+}
+
+TEST(HierarchyFit, TellsHowFarItIs) {
+  const Case c;
+  WorkLog log;
+  RunLogged([&](const Work& work) { return c.Fit(work); }, &log);
+  EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
+  EXPECT_LE(log.shares.back(), 1);
+  for (const char* part : {"reduction", "common factors of coarse levels", "network",
+                           "single springs of coarse levels"}) {
+    EXPECT_GT(log.parts[part], 0) << part;
   }
+  ASSERT_EQ(log.reached.size(), 2u);
+  EXPECT_EQ(log.reached[0].levels.size(), 2u);
 }
 
 // On a ground, where restitution and friction are updated, too.
-TEST(HierarchyFit, UpdatesContactAndResumesThere) {
+TEST(HierarchyFit, UpdatesContactStoppedOrNot) {
   Case c;
   Recording& recording = c.data.recordings[0];
   recording.ground = Eigen::Vector4d(0, 0, 1, recording.start.row(2).minCoeff());
   c.options.levels = 2;
   c.options.reduction = Reduction::kKMeans;
-  c.options.network.contact_updates = 3;
   c.options.network.epochs = 4;
-  HierarchyFit fit = c.Fit();
-  bool more = true, moved = false;
-  for (int steps = 0; more; ++steps) {
-    more = fit.Step();
-    if (fit.Part() != "network") continue;
-    const StateArrays saved = fit.Save();
-    moved = moved || !LoadVector(saved, "trial0/contact", 2).isZero(0);
-    HierarchyFit second = c.Fit();
-    second.Load(saved);
-    EXPECT_EQ(LoadVector(second.Save(), "trial0/contact", 2),
-              LoadVector(saved, "trial0/contact", 2));
-  }
-  EXPECT_TRUE(moved);
+  const auto fit = [&](const Work& work) { return c.Fit(work); };
+  c.options.network.contact_updates = 0;
+  WorkLog without, with;
+  RunLogged(fit, &without);
+  c.options.network.contact_updates = 3;
+  const Twin whole = RunLogged(fit, &with);
+  EXPECT_GT(with.parts["network"], without.parts["network"]);
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 2, &stops), whole);
 }
 
 TEST(HierarchyFit, DoesNotDependOnTheNumberOfThreads) {
   Case one, three;
   one.options.levels = three.options.levels = 2;
   three.options.threads = 3;
-  HierarchyFit a = one.Fit(), b = three.Fit();
-  ExpectSameTwin(RunToTheEnd(&a), RunToTheEnd(&b));
+  ExpectSameTwin(one.Fit(), three.Fit());
 }
 
 TEST(HierarchyFit, RefusesLevelsThatAreNoCoarser) {
   Case c;
   c.options.ratios = {0.5, 0.5};
   try {
-    c.Fit();
+    ExpectCoarserLevels(c.data, c.options);
     FAIL() << "was not refused";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "tests/support/interrupted_work.h"
+#include "tests/support/same_twin.h"
 #include "tests/support/swung_rope.h"
-#include "trainer/make_fitter.h"
 #include "trainer/phystwin_variables.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
@@ -38,16 +41,8 @@ FitData MovedByAModel(int frames, int recordings = 1) {
   return data;
 }
 
-int RunToTheEnd(Fitter* fit) {
-  int steps = 0;
-  while (fit->Step()) ++steps;
-  return steps;
-}
-
-bool SameBits(const StateArrays& a, const StateArrays& b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](auto& x, auto& y) {
-           return x.first == y.first && x.second.data == y.second.data;
-         });
+Twin Fit(const FitData& data, const TrainOptions& options) {
+  return RunToTheEnd([&](const Work& work) { return FitTwoStage(data, options, work); });
 }
 
 double TrackError(const Twin& twin, const Recording& recording) {
@@ -55,86 +50,78 @@ double TrackError(const Twin& twin, const Recording& recording) {
   return *MeansOverFrames(result.levels[0].direct, 1, recording.frame_count()).track.value;
 }
 
-TEST(TwoStageFit, SpendsThePublishedBudget) {
-  const auto fit = MakeFitter(MovedByAModel(3), Options(3));
-  EXPECT_EQ(RunToTheEnd(fit.get()), kGenerations * kPopulation + 3);
-  EXPECT_EQ(fit->Progress(), 1);
+TEST(FitTwoStage, SpendsThePublishedBudget) {
+  const FitData data = MovedByAModel(3);
+  WorkLog log;
+  RunLogged([&](const Work& work) { return FitTwoStage(data, Options(3), work); }, &log);
+  EXPECT_EQ(log.parts["search"], kGenerations * kPopulation);
+  EXPECT_EQ(log.parts["single springs"], 3);
+  EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
+  EXPECT_NEAR(log.shares.back(), 1, 1e-9);
 }
 
-TEST(TwoStageFit, ExplainsWhatAModelOfItsKindDid) {
+TEST(FitTwoStage, ExplainsWhatAModelOfItsKindDid) {
   const FitData data = MovedByAModel(20);
-  TwoStageFit fit(data, Options(20));
-  const double at_start = TrackError(fit.Result(), data.recordings[0]);
-  RunToTheEnd(&fit);
-  const Twin twin = fit.Result();
+  WorkLog log;
+  const Twin twin =
+      RunLogged([&](const Work& work) { return FitTwoStage(data, Options(20), work); }, &log);
+  const double at_start = TrackError(log.reached[0], data.recordings[0]);
   EXPECT_LT(TrackError(twin, data.recordings[0]), 0.25 * at_start);
   EXPECT_EQ(twin.points, 8);
   EXPECT_EQ(twin.levels[0].system.controllers, 1);
 }
 
-TEST(TwoStageFit, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(FitTwoStage, GivesTheSameBitsForAnyNumberOfThreads) {
+  const FitData data = MovedByAModel(3, 2);
   TrainOptions options = Options();
-  TwoStageFit one(MovedByAModel(3, 2), options);
+  const Twin one = Fit(data, options);
   options.threads = 3;
-  TwoStageFit three(MovedByAModel(3, 2), options);
-  RunToTheEnd(&one);
-  RunToTheEnd(&three);
-  EXPECT_TRUE(SameBits(one.Save(), three.Save()));
-  EXPECT_EQ(one.Result().levels[0].system.stiffness, three.Result().levels[0].system.stiffness);
+  ExpectSameTwin(Fit(data, options), one);
 }
 
-TEST(TwoStageFit, ResumesFromAnyStep) {
+TEST(FitTwoStage, StoppedAnywhereGivesTheSameBits) {
   const FitData data = MovedByAModel(3);
-  TwoStageFit whole(data, Options());
-  std::unique_ptr<TwoStageFit> stopped = std::make_unique<TwoStageFit>(data, Options());
-  for (int step = 1; whole.Step(); ++step) {
-    // go on with what a new fit makes of the state
-    if (step % 7 == 0 || step > kGenerations * kPopulation - 2) {
-      const StateArrays state = stopped->Save();
-      stopped = std::make_unique<TwoStageFit>(data, Options());
-      stopped->Load(state);
-      ASSERT_TRUE(SameBits(stopped->Save(), state)) << step;
-    }
-    stopped->Step();
-    ASSERT_TRUE(SameBits(whole.Save(), stopped->Save())) << step;
-  }
-  EXPECT_FALSE(stopped->Step());
+  const auto fit = [&](const Work& work) { return FitTwoStage(data, Options(), work); };
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 7, &stops), RunToTheEnd(fit));
+  EXPECT_EQ(stops, (kGenerations * kPopulation + 1) / 7);
 }
 
-TEST(TwoStageFit, DependsOnTheSeed) {
+TEST(FitTwoStage, DependsOnTheSeed) {
+  const FitData data = MovedByAModel(3);
   TrainOptions options = Options();
-  TwoStageFit one(MovedByAModel(3), options);
+  const auto stiffness = [&] {
+    const Twin twin = Fit(data, options);
+    const Eigen::VectorXd& k = twin.levels[0].system.stiffness;
+    return std::vector<double>(k.begin(), k.end());
+  };
+  const std::vector<double> one = stiffness();
   options.seed = 43;
-  TwoStageFit other(MovedByAModel(3), options);
-  for (int i = 0; i < kPopulation; ++i) {
-    one.Step();
-    other.Step();
-  }
-  EXPECT_FALSE(SameBits(one.Save(), other.Save()));
+  EXPECT_NE(stiffness(), one);
 }
 
-TEST(TwoStageFit, AlwaysHasATwinToShow) {
-  TwoStageFit fit(MovedByAModel(3), Options());
-  do {
-    const Twin twin = fit.Result();
+TEST(FitTwoStage, HasATwinToShowFromTheStartOn) {
+  const FitData data = MovedByAModel(3);
+  WorkLog log;
+  RunLogged([&](const Work& work) { return FitTwoStage(data, Options(), work); }, &log);
+  ASSERT_EQ(log.reached.size(), 2u);
+  for (const Twin& twin : log.reached) {
     ASSERT_NO_THROW(twin.levels.at(0).system.Validate("twin"));
     ASSERT_GE(twin.levels[0].substeps_per_second, 50);
-  } while (fit.Step());
+  }
 }
 
-TEST(TwoStageFit, TakesTheSubstepsGiven) {
+TEST(FitTwoStage, TakesTheSubstepsGiven) {
   TrainOptions options = Options(1);
   options.substeps = 667;
-  TwoStageFit fit(MovedByAModel(2), options);
-  EXPECT_EQ(fit.Result().levels[0].substeps_per_second, 667 * 50);
+  EXPECT_EQ(Fit(MovedByAModel(2), options).levels[0].substeps_per_second, 667 * 50);
 }
 
-TEST(TwoStageFit, SaysThatTooFewSubstepsWereGiven) {
+TEST(FitTwoStage, SaysThatTooFewSubstepsWereGiven) {
   TrainOptions options = Options();
   options.substeps = 1;
-  TwoStageFit fit(MovedByAModel(20), options);
   try {
-    RunToTheEnd(&fit);
+    Fit(MovedByAModel(20), options);
     ADD_FAILURE() << "one sub-step a frame went well";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
@@ -143,28 +130,18 @@ TEST(TwoStageFit, SaysThatTooFewSubstepsWereGiven) {
   }
 }
 
-TEST(TwoStageFit, RefusesControllersThatAreAllOutOfReach) {
+TEST(FitTwoStage, RefusesControllersThatAreAllOutOfReach) {
   FitData data = MovedByAModel(3);
   Recording& recording = data.recordings[0];
   recording.rest.col(8) = recording.rest.col(0) + Eigen::Vector3d(0, 0, 1);
   try {
-    TwoStageFit fit(data, Options());
+    Fit(data, Options());
     ADD_FAILURE() << "a controller was joined over 1 m";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
                  "recording rope: no controller is near enough to a particle to move it; "
                  "PhysTwin's search joins them up to 0.166 m apart, --method full at any distance");
   }
-}
-
-TEST(TwoStageFit, RefusesTheStateOfAnotherFit) {
-  TwoStageFit fit(MovedByAModel(3), Options());
-  StateArrays state = fit.Save();
-  state.erase("train/search_mean");
-  EXPECT_THROW(fit.Load(state), Error);
-  state = fit.Save();
-  state["train/search_covariance"] = StoreVector(Eigen::Vector3d::Zero());
-  EXPECT_THROW(fit.Load(state), Error);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@
 #include "trainer/diagnosis/block_bootstrap.h"
 #include "trainer/diagnosis/effect_certainty.h"
 #include "trainer/diagnosis/effect_fit.h"
-#include "trainer/diagnosis/journal.h"
+#include "trainer/journal/journal.h"
 #include "trainer/diagnosis/residual_pattern.h"
 #include "trainer/diagnosis/unexplained.h"
 #include "twin/recording.h"

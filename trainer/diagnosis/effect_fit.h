@@ -10,7 +10,7 @@
 
 #include "trainer/diagnosis/diagnosis_body.h"
 #include "trainer/diagnosis/effect_problem.h"
-#include "trainer/diagnosis/journal.h"
+#include "trainer/journal/journal.h"
 
 namespace physpring {
 

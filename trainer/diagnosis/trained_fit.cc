@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/diagnosis/trained_fit.h"
 
-#include "trainer/full_fit.h"
+#include "trainer/dense_fit.h"
 #include "twin/error.h"
 #include "twin/predict.h"
 
@@ -39,10 +39,9 @@ std::optional<EffectFit> TrainAnew(const EffectFitting& fitting, const WorkShare
   PieceKey key("training");
   key.Add(options.effects);
   try {
-    FullFit training(std::move(data), options);
-    fitting.journal().Finish(key, share, "training anew with " + options.effects.back().name,
-                             &training);
-    return AsTrained(training.Result(), fitting.recordings(), like);
+    const Work work(&fitting.journal(), key, share,
+                    "training anew with " + options.effects.back().name + ": ");
+    return AsTrained(FitDense(data, options, work), fitting.recordings(), like);
   } catch (const Error&) {
     return {};
   }

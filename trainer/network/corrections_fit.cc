@@ -3,27 +3,12 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 namespace physpring {
 namespace {
 
 constexpr int kNetworkPatience = 5;  // epochs without gain on held-back frames
 constexpr double kShorterSteps = 4;  // times, after turning back
-
-void StoreAdam(const std::string& name, const Adam& adam, StateArrays* arrays) {
-  const std::string prefix = "train/level/" + name + "_adam";
-  (*arrays)[prefix + "/steps"] = StoreCounters({adam.steps});
-  (*arrays)[prefix + "/mean"] = StoreVector(adam.mean);
-  (*arrays)[prefix + "/mean_square"] = StoreVector(adam.mean_square);
-}
-
-void LoadAdam(const std::string& name, const StateArrays& arrays, Adam* adam) {
-  const std::string prefix = "level/" + name + "_adam";
-  adam->steps = LoadCounters(arrays, prefix + "/steps", 1)[0];
-  adam->mean = LoadVector(arrays, prefix + "/mean", adam->mean.size());
-  adam->mean_square = LoadVector(arrays, prefix + "/mean_square", adam->mean_square.size());
-}
 
 }  // namespace
 
@@ -77,34 +62,6 @@ void CorrectionsFit::TurnBack() {
 
 double CorrectionsFit::Progress() const {
   return static_cast<double>(iteration_) / (options_.epochs * UpdatesPerEpoch());
-}
-
-void CorrectionsFit::Save(bool learning, StateArrays* arrays) const {
-  (*arrays)["train/level/best_weights"] = StoreVector(best_weights_);
-  (*arrays)["train/level/best_contact"] = StoreVector(best_contact_);
-  if (!learning) return;
-  (*arrays)["train/level/corrections"] = StoreCounters({iteration_, best_iteration_});
-  (*arrays)["train/level/learning"] = StoreVector(Eigen::Vector2d(best_score_, rate_));
-  (*arrays)["train/level/weights"] = StoreVector(weights_);
-  (*arrays)["train/level/contact"] = StoreVector(contact_);
-  StoreAdam("weights", weights_adam_, arrays);
-  StoreAdam("contact", contact_adam_, arrays);
-}
-
-void CorrectionsFit::Load(bool learning, const StateArrays& state) {
-  weights_ = best_weights_ = LoadVector(state, "level/best_weights", weights_.size());
-  contact_ = best_contact_ = LoadVector(state, "level/best_contact", contact_.size());
-  if (!learning) return;
-  const std::vector<int> counters = LoadCounters(state, "level/corrections", 2);
-  iteration_ = counters[0];
-  best_iteration_ = counters[1];
-  const Eigen::VectorXd scalars = LoadVector(state, "level/learning", 2);
-  best_score_ = scalars[0];
-  rate_ = scalars[1];
-  weights_ = LoadVector(state, "level/weights", weights_.size());
-  contact_ = LoadVector(state, "level/contact", contact_.size());
-  LoadAdam("weights", state, &weights_adam_);
-  LoadAdam("contact", state, &contact_adam_);
 }
 
 }  // namespace physpring

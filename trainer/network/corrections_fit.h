@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include "trainer/adam.h"
-#include "trainer/state_arrays.h"
 #include "trainer/train_options.h"
 
 namespace physpring {
@@ -40,10 +39,12 @@ class CorrectionsFit {
 
   double Progress() const;  // 0 ... 1
 
-  // As arrays "train/level/..." and back; only the best unless `learning`, that is between the
-  // first Judge and the last. The weights' number is that of the constructor.
-  void Save(bool learning, StateArrays* arrays) const;
-  void Load(bool learning, const StateArrays& state);
+  // What a journal keeps (journal/packing.h).
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(weights_, contact_, best_weights_, best_contact_, weights_adam_, contact_adam_,
+          best_score_, iteration_, best_iteration_, rate_);
+  }
 
  private:
   struct Updates {

@@ -125,8 +125,9 @@ void TopologyFit::Learn(const Eigen::VectorXd& weights_bar) {
   adam_mean_square_ = adam.mean_square;
 }
 
-bool TopologyFit::Step() {
-  if (iteration_ > kIterations) return false;
+bool TopologyFit::done() const { return iteration_ > kIterations; }
+
+void TopologyFit::Step() {
   using Kind = TrainOptions::Network::Features;
   const double temperature = iteration_ == kIterations ? 0 : Temperature();
   // distances in units of their mean, so that the temperature means the same at all levels
@@ -146,43 +147,8 @@ bool TopologyFit::Step() {
     }
   }
   ++iteration_;
-  return true;
 }
 
 double TopologyFit::Progress() const { return static_cast<double>(iteration_) / (kIterations + 1); }
-
-StateArrays TopologyFit::Save() const {
-  std::vector<int> candidates;
-  for (const Assignment& one : candidates_) {
-    candidates.insert(candidates.end(), one.begin(), one.end());
-  }
-  const Eigen::Map<const Eigen::VectorXd> errors(errors_.data(),
-                                                 static_cast<Eigen::Index>(errors_.size()));
-  return {{"train/topology/counters",
-           StoreCounters({iteration_, static_cast<int>(candidates_.size())})},
-          {"train/topology/candidates", StoreCounters(candidates)},
-          {"train/topology/errors", StoreVector(errors)},
-          {"train/topology/weights", StoreVector(weights_)},
-          {"train/topology/adam_mean", StoreVector(adam_mean_)},
-          {"train/topology/adam_mean_square", StoreVector(adam_mean_square_)}};
-}
-
-void TopologyFit::Load(const StateArrays& state) {
-  const std::vector<int> counters = LoadCounters(state, "topology/counters", 2);
-  iteration_ = counters[0];
-  const auto count = static_cast<std::size_t>(counters[1]);
-  const auto nodes = static_cast<std::size_t>(twin_.levels.back().system.node_count());
-  const std::vector<int> all = LoadCounters(state, "topology/candidates", count * nodes);
-  candidates_.clear();
-  for (auto one = all.begin(); one != all.end(); one += static_cast<std::ptrdiff_t>(nodes)) {
-    candidates_.emplace_back(one, one + static_cast<std::ptrdiff_t>(nodes));
-  }
-  const Eigen::VectorXd errors =
-      LoadVector(state, "topology/errors", static_cast<Eigen::Index>(count));
-  errors_.assign(errors.begin(), errors.end());
-  weights_ = LoadVector(state, "topology/weights", weights_.size());
-  adam_mean_ = LoadVector(state, "topology/adam_mean", weights_.size());
-  adam_mean_square_ = LoadVector(state, "topology/adam_mean_square", weights_.size());
-}
 
 }  // namespace physpring

@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "trainer/fitter.h"
+#include "trainer/fit_data.h"
 #include "trainer/network/graph_network.h"
 #include "trainer/reduction/neural_clasp.h"
 #include "trainer/rollout.h"
-#include "trainer/state_arrays.h"
 #include "trainer/train_options.h"
+#include "twin/twin.h"
 
 namespace physpring {
 
@@ -28,12 +28,16 @@ class TopologyFit {
               const GraphNetwork& network, const Eigen::VectorXd& weights, int nodes,
               const Eigen::Vector3d& up);
 
-  // As Fitter's.
-  bool Step();
+  // One iteration, and whether it was the last.
+  void Step();
+  bool done() const;
   double Progress() const;
   const std::string& Status() const { return status_; }
-  StateArrays Save() const;
-  void Load(const StateArrays& state);
+  // What a journal keeps (journal/packing.h).
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    visit(iteration_, weights_, adam_mean_, adam_mean_square_, candidates_, errors_);
+  }
 
   // The best assignments so far, all different, and the weights.
   const std::vector<Assignment>& candidates() const { return candidates_; }

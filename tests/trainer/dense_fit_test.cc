@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/full_fit.h"
+#include "trainer/dense_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <memory>
 
+#include "tests/support/interrupted_work.h"
+#include "tests/support/same_twin.h"
 #include "tests/support/swung_rope.h"
 #include "trainer/fit_model.h"
 #include "trainer/start_system.h"
-#include "trainer/state_arrays.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
 
@@ -42,16 +42,8 @@ FitData Swung(int recordings = 1, const std::vector<EffectValues>& effects = {})
   return data;
 }
 
-int RunToTheEnd(FullFit* fit) {
-  int steps = 0;
-  while (fit->Step()) ++steps;
-  return steps;
-}
-
-bool SameBits(const StateArrays& a, const StateArrays& b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](auto& x, auto& y) {
-           return x.first == y.first && x.second.data == y.second.data;
-         });
+Twin Fit(const FitData& data, const TrainOptions& options) {
+  return RunToTheEnd([&](const Work& work) { return FitDense(data, options, work); });
 }
 
 double TrackError(const Twin& twin, const Recording& recording) {
@@ -68,26 +60,21 @@ double MotionlessError(const Recording& recording) {
   return sum / (recording.frame_count() - 1);
 }
 
-TEST(FullFit, ExplainsWhatASystemOfItsKindDid) {
+TEST(FitDense, ExplainsWhatASystemOfItsKindDid) {
   const FitData data = Swung();
-  FullFit fit(data, Options());
-  RunToTheEnd(&fit);
-  const Twin twin = fit.Result();
+  const Twin twin = Fit(data, Options());
   EXPECT_LT(TrackError(twin, data.recordings[0]), 0.03 * MotionlessError(data.recordings[0]));
-  EXPECT_EQ(fit.Progress(), 1);
   EXPECT_EQ(twin.points, kParticles);
   EXPECT_EQ(twin.levels[0].system.controllers, 1);
   EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
 }
 
-TEST(FullFit, KeepsTheEffectsThatItIsGiven) {
+TEST(FitDense, KeepsTheEffectsThatItIsGiven) {
   const std::vector<EffectValues> wind = {{"air_drag", Eigen::Vector4d(0.02, 3, 0, 0)}};
   const FitData data = Swung(1, wind);
   TrainOptions options = Options();
   const auto error = [&] {
-    FullFit fit(data, options);
-    RunToTheEnd(&fit);
-    const Twin twin = fit.Result();
+    const Twin twin = Fit(data, options);
     EXPECT_EQ(twin.levels[0].system.effects.size(), options.effects.size());
     return TrackError(twin, data.recordings[0]);
   };
@@ -96,35 +83,30 @@ TEST(FullFit, KeepsTheEffectsThatItIsGiven) {
   EXPECT_LT(error(), 0.5 * without);
 }
 
-TEST(FullFit, ProgressNeverFalls) {
-  FullFit fit(Swung(), Options());
-  double last = fit.Progress();
-  while (fit.Step()) {
-    ASSERT_GE(fit.Progress(), last) << fit.Status();
-    ASSERT_LE(fit.Progress(), 1) << fit.Status();
-    last = fit.Progress();
-  }
+TEST(FitDense, TellsHowFarItIs) {
+  const FitData data = Swung();
+  WorkLog log;
+  RunLogged([&](const Work& work) { return FitDense(data, Options(), work); }, &log);
+  EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
+  EXPECT_GT(log.shares.front(), 0);
+  EXPECT_LE(log.shares.back(), 1);
+  EXPECT_GT(log.parts["choosing the model"], 0);
+  EXPECT_GT(log.parts["single springs (Gauss-Newton)"], 0);
+  ASSERT_EQ(log.reached.size(), 3u);
+  for (const Twin& twin : log.reached) EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
 }
 
-TEST(FullFit, ResumesFromAnyStep) {
+TEST(FitDense, StoppedAnywhereGivesTheSameBits) {
   const FitData data = Swung();
-  FullFit whole(data, Options());
-  auto stopped = std::make_unique<FullFit>(data, Options());
-  for (int step = 1; whole.Step(); ++step) {
-    const StateArrays state = stopped->Save();
-    stopped = std::make_unique<FullFit>(data, Options());
-    stopped->Load(state);
-    ASSERT_TRUE(SameBits(stopped->Save(), state)) << step;
-    ASSERT_TRUE(stopped->Step());
-    ASSERT_TRUE(SameBits(whole.Save(), stopped->Save())) << step;
-  }
-  EXPECT_FALSE(stopped->Step());
-  EXPECT_EQ(whole.Result().levels[0].system.stiffness,
-            stopped->Result().levels[0].system.stiffness);
+  const auto fit = [&](const Work& work) { return FitDense(data, Options(), work); };
+  const Twin whole = RunToTheEnd(fit);
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 1, &stops), whole);
+  EXPECT_GT(stops, 20);
 }
 
 // What moved as a chain that bends gets one, whose fit ends with free motions.
-TEST(FullFit, ResumesTheFitOfAChain) {
+TEST(FitDense, FitsAChainStoppedOrNot) {
   Recording recording = SwungRope(8, kFrames);
   recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
   MoveAs(StartSystem(recording, Candidates(recording, {}).back(), 8), true, &recording);
@@ -133,75 +115,55 @@ TEST(FullFit, ResumesTheFitOfAChain) {
   data.continuous_recording.push_back(0);
   TrainOptions options;
   options.epochs = 3;
-  FullFit whole(data, options);
-  auto stopped = std::make_unique<FullFit>(data, options);
-  int searched = 0, descended = 0;
-  for (double last = 0; whole.Step(); last = whole.Progress()) {
-    searched += whole.Part() == "search among free motions" ? 1 : 0;
-    descended += whole.Part() == "descent of free motions" ? 1 : 0;
-    ASSERT_GE(whole.Progress(), last);
-    const StateArrays state = stopped->Save();
-    stopped = std::make_unique<FullFit>(data, options);
-    stopped->Load(state);
-    ASSERT_TRUE(SameBits(stopped->Save(), state));
-    ASSERT_TRUE(stopped->Step());
-    ASSERT_TRUE(SameBits(whole.Save(), stopped->Save()));
-  }
-  EXPECT_EQ(searched, options.epochs);
-  EXPECT_GE(descended, 1);
-  EXPECT_LT(TrackError(whole.Result(), recording), 0.05 * MotionlessError(recording));
+  const auto fit = [&](const Work& work) { return FitDense(data, options, work); };
+  WorkLog log;
+  const Twin whole = RunLogged(fit, &log);
+  EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
+  EXPECT_EQ(log.parts["search among free motions"], options.epochs);
+  EXPECT_GE(log.parts["descent of free motions"], 1);
+  EXPECT_LT(TrackError(whole, recording), 0.05 * MotionlessError(recording));
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 2, &stops), whole);
+  EXPECT_GT(stops, 10);
 }
 
-TEST(FullFit, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(FitDense, GivesTheSameBitsForAnyNumberOfThreads) {
   const FitData data = Swung(2);
   TrainOptions options = Options();
-  FullFit one(data, options);
+  const Twin one = Fit(data, options);
   options.threads = 2;
-  FullFit two(data, options);
-  RunToTheEnd(&one);
-  RunToTheEnd(&two);
-  EXPECT_TRUE(SameBits(one.Save(), two.Save()));
+  ExpectSameTwin(Fit(data, options), one);
 }
 
-TEST(FullFit, OptimizerIsTheOneAskedFor) {
+TEST(FitDense, OptimizerIsTheOneAskedFor) {
   TrainOptions options = Options();
   const FitData data = Swung();
   for (const auto optimizer :
        {TrainOptions::Optimizer::kGaussNewton, TrainOptions::Optimizer::kAdam}) {
     options.optimizer = optimizer;
-    FullFit fit(data, options);
-    RunToTheEnd(&fit);
+    WorkLog log;
+    const Twin twin =
+        RunLogged([&](const Work& work) { return FitDense(data, options, work); }, &log);
     const bool adam = optimizer == TrainOptions::Optimizer::kAdam;
-    EXPECT_EQ(fit.Save().at("train/adam_mean").ToDoubles().empty(), !adam);
-    EXPECT_LT(TrackError(fit.Result(), data.recordings[0]),
-              0.1 * MotionlessError(data.recordings[0]));
+    EXPECT_EQ(log.parts["single springs (Adam)"] > 0, adam);
+    EXPECT_EQ(log.parts["single springs (Gauss-Newton)"] > 0, !adam);
+    EXPECT_LT(TrackError(twin, data.recordings[0]), 0.1 * MotionlessError(data.recordings[0]));
   }
 }
 
-TEST(FullFit, SaysThatTooFewSubstepsWereGiven) {
+TEST(FitDense, SaysThatTooFewSubstepsWereGiven) {
   FitData data = Swung();
   data.recordings[0] = SwungRope(kParticles, 400);
   TrainOptions options = Options();
   options.substeps = 1;
-  FullFit fit(data, options);
   try {
-    RunToTheEnd(&fit);
+    Fit(data, options);
     ADD_FAILURE() << "one sub-step a frame went well";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
                  "recording rope: the motion diverges with every start value tried; 1 sub-steps "
                  "a frame are too few");
   }
-}
-
-TEST(FullFit, RefusesTheStateOfAnotherFit) {
-  FullFit fit(Swung(), Options());
-  StateArrays state = fit.Save();
-  state.erase("train/factors");
-  EXPECT_THROW(fit.Load(state), Error);
-  state = fit.Save();
-  state["train/contenders"] = StoreVector(Eigen::Vector3d::Zero());
-  EXPECT_THROW(fit.Load(state), Error);
 }
 
 }  // namespace
