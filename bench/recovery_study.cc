@@ -15,8 +15,8 @@
 #include <set>
 
 #include "bench/study_recordings.h"
+#include "trainer/bodies/candidates.h"
 #include "trainer/diagnosis/diagnosis.h"
-#include "trainer/fit_model.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::json;
 
 struct Case {
-  Body body;
+  StudyBody body;
   std::string effect;
   double noise;  // m
   int seed;
@@ -38,10 +38,10 @@ struct Case {
 
 std::vector<Case> Cases(int seeds, int clean) {
   std::vector<Case> cases;
-  const std::vector<Body> bodies = {Body::kRope, Body::kSheet, Body::kBlock};
+  const std::vector<StudyBody> bodies = {StudyBody::kRope, StudyBody::kSheet, StudyBody::kBlock};
   for (int seed = 0; seed < seeds; ++seed) {
     for (double noise : {3e-4, 1e-3}) {
-      for (Body body : bodies) {
+      for (StudyBody body : bodies) {
         for (const std::string& effect : StudyEffects()) {
           cases.push_back({body, effect, noise, seed});
         }
@@ -58,7 +58,7 @@ std::vector<Case> Cases(int seeds, int clean) {
 // A twin as training leaves it: what counts is its object, everything else is open again.
 Twin TwinOf(const Recording& recording) {
   Twin twin;
-  const Candidate candidate = Candidates(recording, {}).front();
+  const Body candidate = CandidateBodies(recording, {}).front();
   twin.levels.push_back({StartSystem(recording, candidate, 8), {}, 1000});
   twin.points = recording.point_count();
   twin.fps = recording.fps;

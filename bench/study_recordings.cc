@@ -32,13 +32,13 @@ struct Grid {
   double spacing, reach;
 };
 
-Grid GridOf(Body body) {
+Grid GridOf(StudyBody body) {
   switch (body) {
-    case Body::kRope:
+    case StudyBody::kRope:
       return {8, 2, 2, 0.02, 1.8};
-    case Body::kSheet:
+    case StudyBody::kSheet:
       return {5, 4, 1, 0.03, 2.1};
-    case Body::kBlock:
+    case StudyBody::kBlock:
       return {4, 3, 3, 0.025, 1.5};
   }
   return {};
@@ -50,7 +50,7 @@ struct Lattice {
   std::vector<double> length;
 };
 
-Lattice MakeLattice(Body body) {
+Lattice MakeLattice(StudyBody body) {
   const Grid grid = GridOf(body);
   std::vector<Eigen::Vector3d> nodes, held;
   for (int i = 0; i < grid.across; ++i) {
@@ -58,7 +58,7 @@ Lattice MakeLattice(Body body) {
       for (int k = 0; k < grid.deep; ++k) {
         const Eigen::Vector3d place(i * grid.spacing, j * grid.spacing, 0.6 + k * grid.spacing);
         const bool corner = j == 0 && (i == 0 || i == grid.across - 1);
-        const bool is_held = body == Body::kSheet ? corner : i == 0;
+        const bool is_held = body == StudyBody::kSheet ? corner : i == 0;
         (is_held ? held : nodes).push_back(place);
       }
     }
@@ -278,7 +278,7 @@ const std::vector<std::string>& StudyEffects() {
   return kEffects;
 }
 
-MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise,
+MadeRecordings MakeWithEffect(StudyBody body, const std::string& effect, double noise,
                               std::uint64_t seed) {
   Random random(seed);
   const Lattice lattice = MakeLattice(body);

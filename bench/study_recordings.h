@@ -12,7 +12,7 @@
 
 namespace physpring {
 
-enum class Body { kRope, kSheet, kBlock };
+enum class StudyBody { kRope, kSheet, kBlock };
 
 // Names as in twin/effects, "none", and "moving_attraction": to a point that moves, which is not in
 // the list of effects that a diagnosis knows.
@@ -26,7 +26,7 @@ struct MadeRecordings {
 
 // `noise`: standard deviation of a coordinate, m. The seed draws the motions, the effect's size and
 // place, and the noise. Throws Error if MuJoCo warns.
-MadeRecordings MakeWithEffect(Body body, const std::string& effect, double noise,
+MadeRecordings MakeWithEffect(StudyBody body, const std::string& effect, double noise,
                               std::uint64_t seed);
 
 }  // namespace physpring

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trainer/bodies/candidates.h"
 #include "trainer/held_back.h"
 #include "trainer/observer.h"
 #include "trainer/parallel.h"
@@ -31,15 +32,14 @@ constexpr std::array<Round, 3> kRounds = {
     {{"far", 0, 0.5, 0, 1, 5, 3}, {"near", 0.5, 0.9, 2, 3, 6, 1}, {"springs", 0.9, 1, 3, 3, 6, 1}}};
 constexpr const Round& kSpringRound = kRounds[2];
 constexpr int kChoiceConjugateGradients = 20;
-// Changes of the friction's factor that are tried (on a ground), and of the rigidity's (of a rod).
+// Changes of the friction's factor that are tried (on a ground), and of an effect's.
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
-constexpr std::array<double, 3> kRigidities = {0, -2, 2};
-constexpr double kSimpler = 0.9;  // a chain has a tenth of the others' parameters: a tie is its
+constexpr std::array<double, 3> kEffectChanges = {0, -2, 2};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A candidate on its way through the rounds.
 struct Contender {
-  ChosenModel model;
+  ChosenBody model;
   Eigen::VectorXd springs = {};  // fitted in the last round
   double score = kInfinity;      // of the last round it was in, m
 };
@@ -52,22 +52,23 @@ struct RoundState {
 
   template <class Visitor>
   void Visit(Visitor&& visit) {
-    ChosenModel& model = contender.model;
+    ChosenBody& model = contender.model;
     visit(model.start_substeps, model.start, model.factors, contender.springs, contender.score,
           gain, iteration, damping, mean_square);
   }
 };
 
 // The factors that a search begins from.
-std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
+std::vector<Eigen::VectorXd> Starts(const Parameters& factors, const BodyKind& kind) {
   std::vector<Eigen::VectorXd> starts;
+  const int searched = kind.SearchedEffect(factors);
   for (double friction : kFrictions) {
-    for (double rigidity : kRigidities) {
+    for (double change : kEffectChanges) {
       if (factors.friction() < 0 && friction != 0) continue;
-      if (factors.effect_count() == 0 && rigidity != 0) continue;
+      if (searched < 0 && change != 0) continue;
       Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
       if (factors.friction() >= 0) x[factors.friction()] = friction;
-      if (factors.effect_count() > 0) x[factors.effects()] = rigidity;  // a chain's first
+      if (searched >= 0) x[searched] = change;
       starts.push_back(x);
     }
   }
@@ -77,10 +78,10 @@ std::vector<Eigen::VectorXd> Starts(const Parameters& factors) {
 // A round that some contenders are in: what they are fitted to, and how they are judged.
 class RoundOfChoice {
  public:
-  RoundOfChoice(const Round& round, bool with_chain, const HeldBack& held_back,
+  RoundOfChoice(const Round& round, bool by_free_motions, const HeldBack& held_back,
                 const Recording& first, const TrainOptions& options)
       : round_(round),
-        with_chain_(with_chain),
+        by_free_motions_(by_free_motions),
         held_back_(held_back),
         first_(first),
         options_(options) {}
@@ -89,7 +90,7 @@ class RoundOfChoice {
   Contender Run(const Contender& contender, const std::function<int()>& threads,
                 const Work& work) const {
     const RoundState start{contender, round_.first_gain};
-    const bool fits_springs = is_last() && !contender.model.candidate.is_chain();
+    const bool fits_springs = is_last() && contender.model.body.kind->has_single_springs();
     return work
         .Follow(start,
                 [&](RoundState* state) {
@@ -103,51 +104,52 @@ class RoundOfChoice {
 
  private:
   bool is_last() const { return &round_ == &kSpringRound; }
-  // In the last round a chain has free motions fitted, where others have single springs.
-  int LastGain(const Candidate& candidate) const {
-    return candidate.is_chain() && is_last() ? kLastGain : round_.last_gain;
+  // In the last round a body without single springs has free motions fitted, where others have
+  // single springs.
+  int LastGain(const Body& body) const {
+    return !body.kind->has_single_springs() && is_last() ? kLastGain : round_.last_gain;
   }
   StepReport StepCommonFactors(const TrainOptions& options, RoundState* state) const;
   StepReport StepSprings(const TrainOptions& options, RoundState* state) const;
   StepReport Judge(const SpringMassSystem& system, RoundState* state) const;
-  double TrackError(const SpringMassSystem& system, const Candidate& candidate, double gain) const;
-  void SearchStart(ChosenModel* model) const;
+  double TrackError(const SpringMassSystem& system, const Body& body, double gain) const;
+  void SearchStart(ChosenBody* model) const;
 
   const Round& round_;
-  bool with_chain_;  // whether a chain is in the round
+  bool by_free_motions_;  // whether a body in the round has no single springs
   const HeldBack& held_back_;
   const Recording& first_;
   const TrainOptions& options_;
 };
 
 // Among a few start systems from soft to stiff, slippery to rough, the one that predicts best.
-void RoundOfChoice::SearchStart(ChosenModel* model) const {
+void RoundOfChoice::SearchStart(ChosenBody* model) const {
   double least = kInfinity;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
-    const Parameters factors = ChosenModel{model->candidate, substeps, {}, {}}.Factors(first_);
-    TrackProblem::Options follow = FollowOptions(first_, model->candidate, options_);
+    const Parameters factors = ChosenBody{model->body, substeps, {}, {}}.ParametersOf(first_);
+    TrackProblem::Options follow = FollowOptions(first_, model->body, options_);
     follow.rollout.observer_gain = kObserverGains[0];
     TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
-    for (const Eigen::VectorXd& x : Starts(factors)) {
-      if (model->start_substeps == 0) *model = {model->candidate, substeps, x, x};
+    for (const Eigen::VectorXd& x : Starts(factors, *model->body.kind)) {
+      if (model->start_substeps == 0) *model = {model->body, substeps, x, x};
       const auto r = problem.Residuals(x);
       if (!r || r->squaredNorm() >= least) continue;
       least = r->squaredNorm();
-      *model = {model->candidate, substeps, x, x};
+      *model = {model->body, substeps, x, x};
     }
   }
 }
 
 // The error of held-back frames, under an observer of this gain.
-double RoundOfChoice::TrackError(const SpringMassSystem& system, const Candidate& candidate,
+double RoundOfChoice::TrackError(const SpringMassSystem& system, const Body& body,
                                  double gain) const {
-  RolloutOptions options = FollowOptions(first_, candidate, options_).rollout;
+  RolloutOptions options = FollowOptions(first_, body, options_).rollout;
   options.observer_gain = gain;
   return GeometricTrackError(system, held_back_.JudgedEpisodes(), options);
 }
 
 StepReport RoundOfChoice::StepCommonFactors(const TrainOptions& options, RoundState* state) const {
-  ChosenModel& model = state->contender.model;
+  ChosenBody& model = state->contender.model;
   if (model.start_substeps == 0) SearchStart(&model);
   if (state->iteration == 0) state->damping = 1e-2;
   const LevenbergMarquardtState factors = StepFactors(model, held_back_.FitEpisodes(), options,
@@ -155,27 +157,26 @@ StepReport RoundOfChoice::StepCommonFactors(const TrainOptions& options, RoundSt
   model.factors = factors.x;
   state->damping = factors.damping;
   ++state->iteration;
-  const int gains = LastGain(model.candidate) - round_.first_gain + 1;
+  const int gains = LastGain(model.body) - round_.first_gain + 1;
   const double of_gain = static_cast<double>(state->iteration) / round_.most_steps;
   StepReport report{false, (state->gain - round_.first_gain + of_gain) / gains,
-                    fmt::format("{}, start values: {:.3f} mm", model.candidate.Label(),
+                    fmt::format("{}, start values: {:.3f} mm", model.body.Label(),
                                 PointMillimetres(factors.mean_square))};
   if (state->iteration < round_.most_steps && !factors.converged) return report;
   state->iteration = 0;
-  if (++state->gain <= LastGain(model.candidate)) return report;
+  if (++state->gain <= LastGain(model.body)) return report;
   return Judge(model.System(first_), state);
 }
 
 StepReport RoundOfChoice::StepSprings(const TrainOptions& options, RoundState* state) const {
-  const ChosenModel& model = state->contender.model;
-  const Parameters parameters =
-      SpringFactors(model.System(first_), first_, model.candidate.free_effects);
+  const ChosenBody& model = state->contender.model;
+  const Parameters parameters = SpringFactors(model.System(first_), first_, *model.body.kind);
   Eigen::VectorXd& springs = state->contender.springs;
   if (state->iteration == 0) {
     springs = Eigen::VectorXd::Zero(parameters.size());
     state->damping = 1e-3;
   }
-  TrackProblem::Options follow = FollowOptions(first_, model.candidate, options);
+  TrackProblem::Options follow = FollowOptions(first_, model.body, options);
   follow.rollout.growth_limit = kInfinity;
   follow.rollout.observer_gain = kObserverGains[state->gain];
   TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
@@ -189,7 +190,7 @@ StepReport RoundOfChoice::StepSprings(const TrainOptions& options, RoundState* s
   const bool stuck = IsStuck(before, after, state->iteration == 0);
   if (++state->iteration < round_.most_steps && !stuck) {
     return {false, static_cast<double>(state->iteration) / round_.most_steps,
-            fmt::format("{}, single springs: {:.3f} mm", model.candidate.Label(),
+            fmt::format("{}, single springs: {:.3f} mm", model.body.Label(),
                         PointMillimetres(after.mean_square))};
   }
   return Judge(parameters.Apply(springs), state);
@@ -197,19 +198,19 @@ StepReport RoundOfChoice::StepSprings(const TrainOptions& options, RoundState* s
 
 // The score of a contender that has been fitted.
 StepReport RoundOfChoice::Judge(const SpringMassSystem& system, RoundState* state) const {
-  const Candidate& candidate = state->contender.model.candidate;
+  const Body& body = state->contender.model.body;
   double& score = state->contender.score;
-  const auto error = [&](int gain) { return TrackError(system, candidate, kObserverGains[gain]); };
+  const auto error = [&](int gain) { return TrackError(system, body, kObserverGains[gain]); };
   if (!is_last()) {
     score = error(round_.last_gain);
-  } else if (with_chain_) {  // fitted to free motions, it follows an observer worse
+  } else if (by_free_motions_) {  // fitted to free motions, it follows an observer worse
     score = error(kLastGain);
   } else {  // bodies whose motions are chaotic do well only under an observer
     score = 0.5 * (error(round_.last_gain) + error(kLastGain));
   }
-  StepReport report{
-      true, 1, fmt::format("{}: {:.3f} mm on held-back frames", candidate.Label(), 1e3 * score)};
-  if (is_last() && candidate.is_chain()) score *= kSimpler;
+  StepReport report{true, 1,
+                    fmt::format("{}: {:.3f} mm on held-back frames", body.Label(), 1e3 * score)};
+  if (is_last()) score *= body.kind->handicap();
   return report;
 }
 
@@ -221,7 +222,7 @@ std::vector<Contender> Left(const std::vector<Contender>& all, int of_each) {
                    [&](std::size_t i, std::size_t j) { return all[i].score < all[j].score; });
   std::array<int, 2> left = {};  // with and without the controllers' velocity
   std::erase_if(order, [&](std::size_t i) {
-    const bool velocity = all[i].model.candidate.controller_velocity;
+    const bool velocity = all[i].model.body.controller_velocity;
     return ++left[velocity ? 0 : 1] > of_each || !std::isfinite(all[i].score);
   });
   std::sort(order.begin(), order.end());
@@ -247,16 +248,16 @@ BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work
   TrainOptions options = asked;
   options.single_precision = true;
   std::vector<Contender> contenders;
-  for (const Candidate& candidate : Candidates(first, options)) {
-    contenders.push_back({{candidate, 0, {}, {}}});
+  for (const Body& body : CandidateBodies(first, options)) {
+    contenders.push_back({{body, 0, {}, {}}});
   }
-  StartSystem(first, contenders[0].model.candidate, kSoftestStart);  // throws where there is none
+  StartSystem(first, contenders[0].model.body, kSoftestStart);  // throws where there is none
 
   for (const Round& round : kRounds) {
-    const bool with_chain = std::any_of(contenders.begin(), contenders.end(), [](const auto& one) {
-      return one.model.candidate.is_chain();
-    });
-    const RoundOfChoice in_round(round, with_chain, held_back, first, options);
+    const bool by_free_motions =
+        std::any_of(contenders.begin(), contenders.end(),
+                    [](const auto& one) { return !one.model.body.kind->has_single_springs(); });
+    const RoundOfChoice in_round(round, by_free_motions, held_back, first, options);
     const Work of_round = work.Stretch(round.name, round.first_part, round.last_part);
     const int count = static_cast<int>(contenders.size());
     ParallelShared(count, options.threads, [&](int i, const std::function<int()>& threads) {

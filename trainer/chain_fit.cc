@@ -17,8 +17,8 @@ constexpr int kDescents = 6;                // steps of the descent
 // Parts of the work: common factors are done, and the search.
 constexpr double kFactorsDone = 0.45, kSearchDone = 0.73;
 
-std::string Status(const ChosenModel& model, double error) {
-  return fmt::format("{}, free motions: {:.3f} mm", model.candidate.Label(), 1e3 * error);
+std::string Status(const ChosenBody& model, double error) {
+  return fmt::format("{}, free motions: {:.3f} mm", model.body.Label(), 1e3 * error);
 }
 
 struct Descent {
@@ -33,12 +33,12 @@ struct Descent {
 
 }  // namespace
 
-ChosenModel FitChain(const ChosenModel& chosen, const FitData& data, const TrainOptions& options,
-                     const Work& work) {
-  ChosenModel model = FitCommonFactors(chosen, FitEpisodes(data, kMostSpringRecordings), options,
-                                       kChainGains, work.Part("common factors", 0, kFactorsDone));
+ChosenBody FitChain(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
+                    const Work& work) {
+  ChosenBody model = FitCommonFactors(chosen, FitEpisodes(data, kMostSpringRecordings), options,
+                                      kChainGains, work.Part("common factors", 0, kFactorsDone));
   const std::vector<Episode> free = FitEpisodes(data, kMostSearchRecordings);
-  const Parameters factors = model.Factors(data.recordings[0]);
+  const Parameters factors = model.ParametersOf(data.recordings[0]);
 
   const FreeMotionSearch start(model.factors, factors.WholeBodyEntries(), options.epochs,
                                options.seed);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "trainer/bodies/candidates.h"
 #include "trainer/body_choice.h"
 #include "trainer/chain_fit.h"
 #include "trainer/factor_fit.h"
@@ -18,7 +19,7 @@ constexpr GainSchedule kAllGains{0, 6};
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.45, kCommon = 0.5;
 
-Twin TwinOf(const SpringMassSystem& system, const Candidate& candidate, const FitData& data,
+Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& data,
             const TrainOptions& options) {
   const Recording& first = data.recordings[0];
   const int substeps = options.substeps > 0 ? options.substeps
@@ -31,7 +32,7 @@ Twin TwinOf(const SpringMassSystem& system, const Candidate& candidate, const Fi
   twin.points = first.point_count();
   twin.interior = first.interior_count();
   twin.order = first.order;
-  twin.controller_velocity = candidate.controller_velocity;
+  twin.controller_velocity = body.controller_velocity;
   twin.fps = first.fps;
   twin.gravity = first.gravity;
   twin.seed = options.seed;
@@ -42,16 +43,16 @@ Twin TwinOf(const SpringMassSystem& system, const Candidate& candidate, const Fi
 
 Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work) {
   const Recording& first = data.recordings.at(0);
-  const Candidate simplest = Candidates(first, options)[0];
+  const Body simplest = CandidateBodies(first, options)[0];
   work.Reached(TwinOf(StartSystem(first, simplest, kSoftestStart), simplest, data, options));
 
   const BodyChoice choice = ChooseBody(data, options, work.Part("choosing the model", 0, kChosen));
-  ChosenModel model = choice.model;
-  const Candidate& body = model.candidate;
+  ChosenBody model = choice.model;
+  const Body& body = model.body;
   work.Reached(TwinOf(model.System(first), body, data, options));
 
   const bool has_springs = choice.springs.size() > 0 && GaussNewtonSteps(options) > 0;
-  if (body.is_chain()) {
+  if (!body.kind->has_single_springs()) {
     model = FitChain(model, data, options, work.Part("chain", kChosen, 1));
   } else if (!has_springs) {
     model.factors = model.start;
@@ -59,10 +60,10 @@ Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work
                              work.Part("common factors", kChosen, kCommon));
   }
 
-  const Parameters springs = SpringFactors(model.System(first), first, body.free_effects);
+  const Parameters springs = SpringFactors(model.System(first), first, *body.kind);
   Eigen::VectorXd x = has_springs ? choice.springs : Eigen::VectorXd::Zero(springs.size());
   work.Reached(TwinOf(springs.Apply(x), body, data, options));
-  if (!body.is_chain()) {
+  if (body.kind->has_single_springs()) {
     x = FitSprings(model, data, options, x, work.Part("single springs", kCommon, 1));
   }
   return TwinOf(springs.Apply(x), body, data, options);

@@ -24,10 +24,10 @@ struct FactorFit {
 
 }  // namespace
 
-ChosenModel FitCommonFactors(const ChosenModel& start, const std::vector<Episode>& episodes,
-                             const TrainOptions& options, const GainSchedule& schedule,
-                             const Work& work) {
-  ChosenModel model = start;
+ChosenBody FitCommonFactors(const ChosenBody& start, const std::vector<Episode>& episodes,
+                            const TrainOptions& options, const GainSchedule& schedule,
+                            const Work& work) {
+  ChosenBody model = start;
   const auto step = [&](FactorFit* fit) -> StepReport {
     model.factors = fit->factors;
     const LevenbergMarquardtState after =
@@ -38,7 +38,7 @@ ChosenModel FitCommonFactors(const ChosenModel& start, const std::vector<Episode
     const double of_gain = static_cast<double>(fit->iteration) / schedule.most_steps;
     StepReport report{
         false, (fit->gain - schedule.first_gain + of_gain) / (kLastGain + 1 - schedule.first_gain),
-        fmt::format("{}, all fit frames: {:.3f} mm", model.candidate.Label(),
+        fmt::format("{}, all fit frames: {:.3f} mm", model.body.Label(),
                     PointMillimetres(after.mean_square))};
     if (fit->iteration < schedule.most_steps && !after.converged) return report;
     fit->iteration = 0;

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "trainer/chosen_model.h"
+#include "trainer/chosen_body.h"
 #include "trainer/journal/work.h"
 
 namespace physpring {
@@ -18,9 +18,9 @@ struct GainSchedule {
 };
 
 // The body with factors fitted from those it has.
-ChosenModel FitCommonFactors(const ChosenModel& start, const std::vector<Episode>& episodes,
-                             const TrainOptions& options, const GainSchedule& schedule,
-                             const Work& work);
+ChosenBody FitCommonFactors(const ChosenBody& start, const std::vector<Episode>& episodes,
+                            const TrainOptions& options, const GainSchedule& schedule,
+                            const Work& work);
 
 }  // namespace physpring
 

@@ -16,7 +16,7 @@ constexpr double kLeastGain = 0.995;  // of the error: what gains less is the la
 
 }  // namespace
 
-FreeMotionDescent DescendFreeMotions(const ChosenModel& model, const std::vector<int>& entries,
+FreeMotionDescent DescendFreeMotions(const ChosenBody& model, const std::vector<int>& entries,
                                      const std::vector<Episode>& episodes,
                                      const TrainOptions& options, const FreeMotionDescent& state) {
   const FreeMotionError error(model, episodes, options);

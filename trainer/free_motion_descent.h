@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "trainer/chosen_model.h"
+#include "trainer/chosen_body.h"
 
 namespace physpring {
 
@@ -20,7 +20,7 @@ struct FreeMotionDescent {
 
 // One step from `state`, of the factors' `entries`. Never to a larger error; the result does not
 // depend on options.threads.
-FreeMotionDescent DescendFreeMotions(const ChosenModel& model, const std::vector<int>& entries,
+FreeMotionDescent DescendFreeMotions(const ChosenBody& model, const std::vector<int>& entries,
                                      const std::vector<Episode>& episodes,
                                      const TrainOptions& options, const FreeMotionDescent& state);
 

@@ -3,14 +3,14 @@
 
 #include <limits>
 
-#include "trainer/fit_model.h"
+#include "trainer/factors.h"
 
 namespace physpring {
 
-FreeMotionError::FreeMotionError(const ChosenModel& model, std::vector<Episode> episodes,
+FreeMotionError::FreeMotionError(const ChosenBody& model, std::vector<Episode> episodes,
                                  const TrainOptions& options)
-    : factors_(model.Factors(*episodes.at(0).recording)),
-      follow_(FollowOptions(*episodes[0].recording, model.candidate, options)),
+    : factors_(model.ParametersOf(*episodes.at(0).recording)),
+      follow_(FollowOptions(*episodes[0].recording, model.body, options)),
       problem_(factors_, episodes, follow_) {
   for (const Episode& episode : episodes) judged_.push_back({episode, episode.recording});
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// By what the fit of a chain (fit_model.h) ends: the geometric mean of the track errors of free
-// motions, as a function of the chain's common factors. Those of a cable that whirls are chaotic:
-// small differences and adjoints of them tell little, values and long differences more.
+// By what the fit of a chain (bodies/bending_chain.h) ends: the geometric mean of the track errors
+// of free motions, as a function of the chain's common factors. Those of a cable that whirls are
+// chaotic: small differences and adjoints of them tell little, values and long differences more.
 #ifndef PHYSPRING_TRAINER_FREE_MOTION_ERROR_H_
 #define PHYSPRING_TRAINER_FREE_MOTION_ERROR_H_
 
 #include <vector>
 
-#include "trainer/chosen_model.h"
+#include "trainer/chosen_body.h"
 #include "trainer/track_error.h"
 
 namespace physpring {
 
 class FreeMotionError {
  public:
-  FreeMotionError(const ChosenModel& model, std::vector<Episode> episodes,
+  FreeMotionError(const ChosenBody& model, std::vector<Episode> episodes,
                   const TrainOptions& options);
   FreeMotionError(const FreeMotionError&) = delete;
   FreeMotionError& operator=(const FreeMotionError&) = delete;

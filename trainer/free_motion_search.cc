@@ -45,7 +45,7 @@ double FreeMotionSearch::Progress() const {
   return done() ? 1 : static_cast<double>(search_.state().generation) / all;
 }
 
-void FreeMotionSearch::Step(const ChosenModel& model, const std::vector<Episode>& episodes,
+void FreeMotionSearch::Step(const ChosenBody& model, const std::vector<Episode>& episodes,
                             const TrainOptions& options) {
   const FreeMotionError free_motions(model, episodes, options);
   const auto error = [&](const Eigen::VectorXd& point) { return free_motions(FactorsAt(point)); };

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of the fit of a chain (fit_model.h): CMA-ES on those of its common factors that are one
-// value for the whole body, from where Levenberg-Marquardt left them, for the geometric mean of the
-// track errors of free motions. The motions of a cable that whirls are chaotic: differences and
-// adjoints of them tell little of where better factors are, and their squares are those of a few
-// frames in which it lost its phase. The shape of the rod stays: that is seen under an observer.
+// The end of the fit of a chain (bodies/bending_chain.h): CMA-ES on those of its common factors
+// that are one value for the whole body, from where Levenberg-Marquardt left them, for the
+// geometric mean of the track errors of free motions. The motions of a cable that whirls are
+// chaotic: differences and adjoints of them tell little of where better factors are, and their
+// squares are those of a few frames in which it lost its phase. The shape of the rod stays: that is
+// seen under an observer.
 #ifndef PHYSPRING_TRAINER_FREE_MOTION_SEARCH_H_
 #define PHYSPRING_TRAINER_FREE_MOTION_SEARCH_H_
 
 #include <cstdint>
 #include <vector>
 
-#include "trainer/chosen_model.h"
+#include "trainer/chosen_body.h"
 #include "trainer/cma_es.h"
 
 namespace physpring {
@@ -26,7 +27,7 @@ class FreeMotionSearch {
   double Progress() const;
 
   // One generation, of the factors of `model`. The result does not depend on options.threads.
-  void Step(const ChosenModel& model, const std::vector<Episode>& episodes,
+  void Step(const ChosenBody& model, const std::vector<Episode>& episodes,
             const TrainOptions& options);
 
   Eigen::VectorXd BestFactors() const { return FactorsAt(search_.state().best); }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "trainer/fit_model.h"
+#include "trainer/factors.h"
 #include "trainer/level_model.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/lifted_loss.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "trainer/fit_model.h"
+#include "trainer/factors.h"
 #include "trainer/network/level_network.h"
 #include "trainer/observer.h"
 #include "twin/stability.h"

@@ -64,12 +64,12 @@ int AdamSteps(const TrainOptions& options) {
 // What is fitted, and to what.
 class SpringFit {
  public:
-  SpringFit(const ChosenModel& model, const FitData& data, const TrainOptions& options)
+  SpringFit(const ChosenBody& model, const FitData& data, const TrainOptions& options)
       : options_(options),
-        parameters_(SpringFactors(model.System(data.recordings[0]), data.recordings[0],
-                                  model.candidate.free_effects)),
+        parameters_(
+            SpringFactors(model.System(data.recordings[0]), data.recordings[0], *model.body.kind)),
         prior_(SpringPrior(parameters_)),
-        follow_(FollowOptions(data.recordings[0], model.candidate, options)),
+        follow_(FollowOptions(data.recordings[0], model.body, options)),
         episodes_(FitEpisodes(data, kMostSpringRecordings)) {}
 
   StepReport StepGaussNewton(GaussNewtonFit* fit) const;
@@ -177,7 +177,7 @@ int GaussNewtonSteps(const TrainOptions& options) {
   return 0;
 }
 
-Eigen::VectorXd FitSprings(const ChosenModel& model, const FitData& data,
+Eigen::VectorXd FitSprings(const ChosenBody& model, const FitData& data,
                            const TrainOptions& options, const Eigen::VectorXd& x,
                            const Work& work) {
   const SpringFit springs(model, data, options);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fit of every spring's own stiffness, dashpot and rest length (fit_model.h, SpringFactors):
+// The fit of every spring's own stiffness, dashpot and rest length (factors.h, SpringFactors):
 //   Gauss-Newton  under an observer whose gain falls to 0 (observer.h), while it gets on
 //   Adam          goes on where contacts or chaotic motions make the residuals too rough for that
 #ifndef PHYSPRING_TRAINER_SPRING_FIT_H_
 #define PHYSPRING_TRAINER_SPRING_FIT_H_
 
-#include "trainer/chosen_model.h"
+#include "trainer/chosen_body.h"
 #include "trainer/fit_data.h"
 #include "trainer/journal/work.h"
 
@@ -15,7 +15,7 @@ namespace physpring {
 int GaussNewtonSteps(const TrainOptions& options);
 
 // The springs' own values, fitted from `x` on.
-Eigen::VectorXd FitSprings(const ChosenModel& model, const FitData& data,
+Eigen::VectorXd FitSprings(const ChosenBody& model, const FitData& data,
                            const TrainOptions& options, const Eigen::VectorXd& x, const Work& work);
 
 }  // namespace physpring

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rod that moved as its chain (trainer/fit_model.h) does with all factors 0.
+// A rod that moved as its chain (trainer/bodies/bending_chain.h) does with all factors 0.
 #ifndef PHYSPRING_TESTS_SUPPORT_SWUNG_CHAIN_H_
 #define PHYSPRING_TESTS_SUPPORT_SWUNG_CHAIN_H_
 
 #include "tests/support/swung_rope.h"
-#include "trainer/chosen_model.h"
-#include "trainer/fit_model.h"
+#include "trainer/chosen_body.h"
+#include "trainer/bodies/candidates.h"
 
 namespace physpring {
 
 struct SwungChain {
   explicit SwungChain(int frames) : recording(SwungRope(8, frames)) {
     recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.3, 0);
-    model.candidate = Candidates(recording, {}).back();
+    model.body = CandidateBodies(recording, {}).back();
     model.start_substeps = 8;
-    model.start = Eigen::VectorXd::Zero(model.Factors(recording).size());
+    model.start = Eigen::VectorXd::Zero(model.ParametersOf(recording).size());
     model.factors = model.start;
-    MoveAs(model.System(recording), model.candidate.controller_velocity, &recording);
+    MoveAs(model.System(recording), model.body.controller_velocity, &recording);
   }
 
   // Factors with 0.3 at the entries.
@@ -27,7 +27,7 @@ struct SwungChain {
   }
 
   Recording recording;
-  ChosenModel model;
+  ChosenBody model;
 };
 
 }  // namespace physpring

@@ -8,7 +8,7 @@
 #include "tests/support/interrupted_work.h"
 #include "tests/support/same_twin.h"
 #include "tests/support/swung_rope.h"
-#include "trainer/fit_model.h"
+#include "trainer/bodies/candidates.h"
 #include "trainer/start_system.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
@@ -109,7 +109,7 @@ TEST(FitDense, StoppedAnywhereGivesTheSameBits) {
 TEST(FitDense, FitsAChainStoppedOrNot) {
   Recording recording = SwungRope(8, kFrames);
   recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
-  MoveAs(StartSystem(recording, Candidates(recording, {}).back(), 8), true, &recording);
+  MoveAs(StartSystem(recording, CandidateBodies(recording, {}).back(), 8), true, &recording);
   FitData data;
   data.recordings.push_back(recording);
   data.continuous_recording.push_back(0);

@@ -13,7 +13,7 @@ constexpr int kFrames = 16;
 class FreeMotionDescends : public testing::Test {
  protected:
   std::vector<int> Shape() const {
-    return chain_.model.Factors(chain_.recording).AlongBodyEntries();
+    return chain_.model.ParametersOf(chain_.recording).AlongBodyEntries();
   }
   FreeMotionDescent Step(const FreeMotionDescent& state, int threads = 1) const {
     TrainOptions options;

@@ -22,7 +22,7 @@ class FreeMotions : public testing::Test {
     search->Step(chain_.model, {{&chain_.recording, kFrames}}, options);
   }
   std::vector<int> WholeBody() const {
-    return chain_.model.Factors(chain_.recording).WholeBodyEntries();
+    return chain_.model.ParametersOf(chain_.recording).WholeBodyEntries();
   }
 
   SwungChain chain_ = SwungChain(kFrames);

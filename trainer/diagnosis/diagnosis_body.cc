@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
-#include "trainer/fit_model.h"
-#include "twin/effects/registry.h"
+#include "trainer/bodies/bending_chain.h"
+#include "trainer/bodies/candidates.h"
 #include "twin/topology.h"
 
 namespace physpring {
@@ -46,22 +45,6 @@ Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording
 
 }  // namespace
 
-bool IsBendingChain(const SpringMassSystem& system) {
-  const bool bends = std::any_of(system.effects.begin(), system.effects.end(),
-                                 [](const EffectValues& e) { return GetEffect(e.name).bends(); });
-  if (!bends || system.order.size() == 0) return false;
-  const int nodes = system.node_count();
-  std::vector<int> along(nodes), place(nodes);
-  std::iota(along.begin(), along.end(), 0);
-  std::sort(along.begin(), along.end(),
-            [&](int i, int j) { return system.order[i] < system.order[j]; });
-  for (int i = 0; i < nodes; ++i) place[along[i]] = i;
-  return std::all_of(system.springs.begin(), system.springs.end(), [&](const auto& spring) {
-    const bool controlled = std::max(spring[0], spring[1]) >= nodes;
-    return controlled || std::abs(place[spring[0]] - place[spring[1]]) == 1;
-  });
-}
-
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on) {
   const bool chain = IsBendingChain(twin.levels[0].system);
   DiagnosisBody own{twin.levels[0].system, twin.controller_velocity, chain || !trained_on,
@@ -77,7 +60,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   }
   options.cone = own.base.contact.cone;
   const Recording shaped = WithShapeOf(own.base, recording);
-  for (const Candidate& candidate : Candidates(shaped, options)) {
+  for (const Body& candidate : CandidateBodies(shaped, options)) {
     SpringMassSystem system = StartSystem(shaped, candidate, kStart);
     system.mass = own.base.mass;
     system.effects.clear();

@@ -6,8 +6,8 @@
 //   is right is found together with the effect.
 //   A twin that was trained on other recordings knows its object: it is the only body, and its own
 //   parameters hardly move.
-//   So does a chain that bends (trainer/fit_model.h), whatever it was trained on: a few common
-//   factors can bend to little. What it has of effects belongs to it, and stays.
+//   So does a chain that bends (trainer/bodies/bending_chain.h), whatever it was trained on: a few
+//   common factors can bend to little. What it has of effects belongs to it, and stays.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_BODY_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_DIAGNOSIS_BODY_H_
 
@@ -25,9 +25,6 @@ struct DiagnosisBody {
   bool trusted = false;  // its own parameters hardly move
   std::string label;
 };
-
-// Whether a system's particles are joined to the next along a rod only, which bends by an effect.
-bool IsBendingChain(const SpringMassSystem& system);
 
 // Never empty; the twin's own model first. `recording` is one of the twin's object.
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on);

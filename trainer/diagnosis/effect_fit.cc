@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "trainer/fit_model.h"
+#include "trainer/factors.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/observer.h"

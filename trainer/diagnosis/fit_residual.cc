@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trainer/fit_model.h"
+#include "trainer/factors.h"
 #include "trainer/parallel.h"
 
 namespace physpring {

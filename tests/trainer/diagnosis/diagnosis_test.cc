@@ -10,7 +10,7 @@
 
 #include "tests/support/random_system.h"
 #include "tests/support/tendon_oracle.h"
-#include "trainer/fit_model.h"
+#include "trainer/factors.h"
 #include "twin/effects/registry.h"
 #include "twin/stability.h"
 

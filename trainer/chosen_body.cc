@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/chosen_model.h"
+#include "trainer/chosen_body.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,32 +29,31 @@ Eigen::VectorXd Robust(const Eigen::VectorXd& r, double w) {
 
 }  // namespace
 
-Parameters ChosenModel::Factors(const Recording& recording) const {
-  return CommonFactors(StartSystem(recording, candidate, start_substeps), recording,
-                       candidate.free_effects);
+Parameters ChosenBody::ParametersOf(const Recording& recording) const {
+  return CommonFactors(StartSystem(recording, body, start_substeps), recording, *body.kind);
 }
 
-SpringMassSystem ChosenModel::System(const Recording& recording) const {
-  return Factors(recording).Apply(factors);
+SpringMassSystem ChosenBody::System(const Recording& recording) const {
+  return ParametersOf(recording).Apply(factors);
 }
 
-LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
+LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
   const Recording& recording = *episodes.at(0).recording;
-  TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
-  follow.threads = 1;                                          // the differences run in parallel
-  if (!model.candidate.is_chain()) follow.most_substeps /= 2;  // single springs want room
+  TrackProblem::Options follow = FollowOptions(recording, model.body, options);
+  follow.threads = 1;  // the differences run in parallel
+  if (model.body.kind->has_single_springs()) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
-  const Parameters factors = model.Factors(recording);
+  const Parameters factors = model.ParametersOf(recording);
   TrackProblem problem(factors, episodes, follow);
-  LevenbergMarquardtOptions levenberg = FactorOptions(recording, model.candidate);
+  LevenbergMarquardtOptions levenberg = model.body.kind->FactorOptions(recording);
   levenberg.threads = options.threads;
   LevenbergMarquardtState state;
   state.x = model.factors;
   state.damping = damping;
   // a chain that is far off for a while would outweigh all others
   double limit = std::numeric_limits<double>::infinity();
-  if (model.candidate.is_chain()) {
+  if (!model.body.kind->has_single_springs()) {
     if (const auto r = problem.Residuals(state.x)) limit = kRobust * MedianSize(*r);
   }
   const auto residuals = [&](const Eigen::VectorXd& x) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/fit_model.h"
+#include "trainer/bodies/candidates.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/swung_rope.h"
+#include "trainer/factors.h"
 #include "twin/effects/effect_set.h"
 
 namespace physpring {
@@ -16,18 +17,18 @@ Recording Rod() {
 }
 
 TEST(Candidates, OfARodEndWithAChainThatBends) {
-  const Candidate chain = Candidates(Rod(), {}).back();
+  const Body chain = CandidateBodies(Rod(), {}).back();
   EXPECT_EQ(chain.neighbours, 2);
-  EXPECT_EQ(chain.free_effects, 4);
+  EXPECT_FALSE(chain.kind->has_single_springs());
   const SpringMassSystem system = StartSystem(Rod(), chain, 8);
   EXPECT_EQ(system.effects.size(), 5U);
   EXPECT_NO_THROW(system.Validate("chain"));
-  EXPECT_EQ(CommonFactors(system, Rod(), 4).effect_count(), 1 + 2 + 16 + 2);
+  EXPECT_EQ(CommonFactors(system, Rod(), *chain.kind).effect_count(), 1 + 2 + 16 + 2);
 }
 
 // Nodes that go to and fro across the rod, every other one the other way: its shortest wave.
 TEST(Candidates, OfARodCalmItsShortestWave) {
-  SpringMassSystem system = StartSystem(Rod(), Candidates(Rod(), {}).back(), 8);
+  SpringMassSystem system = StartSystem(Rod(), CandidateBodies(Rod(), {}).back(), 8);
   std::erase_if(system.effects,
                 [](const EffectValues& effect) { return effect.name != "bending_damping"; });
   ASSERT_EQ(system.effects.size(), 1U);
@@ -45,24 +46,24 @@ TEST(Candidates, OfARodCalmItsShortestWave) {
 TEST(Candidates, OfARodWhoseBendingIsKnownDoNotFitIt) {
   TrainOptions options;
   options.effects = {{"bending", Eigen::VectorXd::Constant(1, 1e-3)}};
-  const Candidate chain = Candidates(Rod(), options).back();
+  const Body chain = CandidateBodies(Rod(), options).back();
   EXPECT_EQ(chain.neighbours, 2);
   EXPECT_EQ(chain.effects.size(), 1U);
-  EXPECT_EQ(chain.free_effects, 0);
+  EXPECT_EQ(chain.kind, &SpringNet());
 }
 
 TEST(Candidates, OfOtherBodiesDoNotBend) {
-  for (const Candidate& candidate : Candidates(SwungRope(30, 2), {})) {
-    EXPECT_EQ(candidate.free_effects, 0) << candidate.Label();
+  for (const Body& candidate : CandidateBodies(SwungRope(30, 2), {})) {
+    EXPECT_EQ(candidate.kind, &SpringNet()) << candidate.Label();
   }
 }
 
 TEST(Candidates, HaveTheNeighboursThatAreAskedFor) {
   TrainOptions options;
   options.neighbours = {6};
-  for (const Candidate& candidate : Candidates(Rod(), options)) {
+  for (const Body& candidate : CandidateBodies(Rod(), options)) {
     EXPECT_EQ(candidate.neighbours, 6);
-    EXPECT_EQ(candidate.free_effects, 0);
+    EXPECT_EQ(candidate.kind, &SpringNet());
   }
 }
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/bodies/body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "trainer/start_system.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kFewestNeighbours = 6;  // of a particle or controller that has few within reach
+constexpr int kMostPerWanted = 4;     // neighbours, at most this many times those of inner ones
+
+}  // namespace
+
+std::string Body::Label() const {
+  return fmt::format("{} neighbours{}{}{}", neighbours, kind->Addition(),
+                     controller_velocity ? "" : ", controllers without velocity",
+                     cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
+}
+
+SpringMassSystem StartSystem(const Recording& recording, const Body& body, double start_substeps) {
+  TopologyOptions topology;
+  topology.max_neighbours = topology.controller_max_neighbours = body.neighbours;
+  if (body.radius > 0) {
+    topology.radius = topology.controller_radius = body.radius;
+    topology.min_neighbours = std::min(kFewestNeighbours, body.neighbours);
+    topology.max_neighbours *= kMostPerWanted;
+    topology.controller_max_neighbours *= kMostPerWanted;
+  }
+  SpringMassSystem system = MakeStartSystem(recording, topology);
+  if (body.mass.size() > 0) system.mass = body.mass;
+  system.contact.cone = body.cone;
+  ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
+  system.effects = body.effects;
+  return system;
+}
+
+}  // namespace physpring

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A body that a fit may choose: which particles are joined, whether dashpots feel the controllers'
+// velocity, the cone of friction, its effects; and of which kind it is. A kind says how such a body
+// is fitted:
+//   spring net     common factors, then single springs       (spring_net.cc)
+//   bending chain  common factors, among them the values of its own effects, then by free motions
+//                  (bending_chain.cc)
+// Whatever differs between kinds is asked of the kind.
+#ifndef PHYSPRING_TRAINER_BODIES_BODY_H_
+#define PHYSPRING_TRAINER_BODIES_BODY_H_
+
+#include <string>
+#include <vector>
+
+#include "trainer/levenberg_marquardt.h"
+#include "trainer/parameters.h"
+#include "twin/effects/effect_values.h"
+#include "twin/recording.h"
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+class BodyKind {
+ public:
+  virtual ~BodyKind() = default;
+
+  // What a label says of it after the neighbours.
+  virtual std::string Addition() const = 0;
+  // Whether each spring has values of its own; else the fit ends with free motions.
+  virtual bool has_single_springs() const = 0;
+  // Changes in the options of the parameters of a system of this kind.
+  virtual void Free(const SpringMassSystem& base, ParameterOptions* options) const = 0;
+  // The entries of common factors, first among those of effects, that a search of start values
+  // tries several values of; -1: none.
+  virtual int SearchedEffect(const Parameters& factors) const = 0;
+  // How common factors are fitted.
+  virtual LevenbergMarquardtOptions FactorOptions(const Recording& recording) const = 0;
+  // By what the error of such a body is multiplied in a choice: one of few values wins ties.
+  virtual double handicap() const = 0;
+};
+
+struct Body {
+  const BodyKind* kind;
+  int neighbours = 0;  // of an inner particle, about
+  double radius = 0;   // m, that gives them (not used along rods)
+  bool controller_velocity = true;
+  FrictionCone cone = FrictionCone::kElliptic;
+  std::vector<EffectValues> effects = {};  // those that are known, then the kind's own
+  Eigen::VectorXd mass = {};               // kg, of each particle; empty: all alike
+
+  std::string Label() const;
+};
+
+// Start systems that a fit tries, in sub-steps a frame.
+constexpr double kSoftestStart = 2, kStiffestStart = 64;
+
+// Over-damped, and as soft as `start_substeps` sub-steps a frame allow. Throws Error where the
+// recording gives no body.
+SpringMassSystem StartSystem(const Recording& recording, const Body& body, double start_substeps);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_BODIES_BODY_H_
