@@ -41,12 +41,12 @@ SpringMassSystem ChosenModel::System(const Recording& recording) const {
 LevenbergMarquardtState StepFactors(const ChosenModel& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
   const Recording& recording = *episodes.at(0).recording;
-  TrackProblem::Options follow = FollowOptions(recording, model.candidate, options);
+  MotionProblem::Options follow = FollowOptions(recording, model.candidate, options);
   follow.threads = 1;                                          // the differences run in parallel
   if (!model.candidate.is_chain()) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
   const Parameters factors = model.Factors(recording);
-  TrackProblem problem(factors, episodes, follow);
+  MotionProblem problem(factors, episodes, follow);
   LevenbergMarquardtOptions levenberg = FactorOptions(recording, model.candidate);
   levenberg.threads = options.threads;
   LevenbergMarquardtState state;

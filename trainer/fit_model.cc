@@ -203,9 +203,9 @@ double DirectionDifference(const Recording& recording, bool single_precision) {
   return recording.ground || single_precision ? 1e-3 : 1e-5;
 }
 
-TrackProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
-                                    const TrainOptions& options) {
-  TrackProblem::Options problem;
+MotionProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
+                                     const TrainOptions& options) {
+  MotionProblem::Options problem;
   problem.rollout.single_precision = options.single_precision;
   problem.rollout.controller_velocity = candidate.controller_velocity;
   problem.rollout.substeps = options.substeps;

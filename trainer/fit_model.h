@@ -10,8 +10,8 @@
 #include "trainer/fitter.h"
 #include "trainer/gauss_newton.h"
 #include "trainer/levenberg_marquardt.h"
+#include "trainer/motion_problem.h"
 #include "trainer/parameters.h"
-#include "trainer/track_problem.h"
 #include "trainer/train_options.h"
 
 namespace physpring {
@@ -64,8 +64,8 @@ LevenbergMarquardtOptions FactorOptions(const Recording& recording, const Candid
 
 // No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);
 // for common factors half of that, so that single springs find room.
-TrackProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
-                                    const TrainOptions& options);
+MotionProblem::Options FollowOptions(const Recording& recording, const Candidate& candidate,
+                                     const TrainOptions& options);
 
 }  // namespace physpring
 

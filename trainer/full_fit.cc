@@ -154,10 +154,10 @@ int FullFit::AdamSteps() const {
 
 void FullFit::StepGaussNewton() {
   const Parameters parameters = SpringParameters();
-  TrackProblem::Options follow = FollowOptions(first(), model_.candidate, options_);
+  MotionProblem::Options follow = FollowOptions(first(), model_.candidate, options_);
   follow.rollout.growth_limit = std::numeric_limits<double>::infinity();
   follow.rollout.observer_gain = kObserverGains[state_.gain];
-  TrackProblem problem(parameters, all_, follow);
+  MotionProblem problem(parameters, all_, follow);
   const GaussNewtonState before{state_.x, state_.damping, state_.mean_square, false};
   const GaussNewtonState after = GaussNewtonStep(&problem, before, SpringPrior(parameters));
   state_.x = after.x;
@@ -198,7 +198,7 @@ void FullFit::BeginAdam(bool wanted) {
 void FullFit::StepAdam() {
   const Parameters parameters = SpringParameters();
   const GaussNewtonOptions prior = SpringPrior(parameters);
-  TrackProblem problem(parameters, all_, FollowOptions(first(), model_.candidate, options_));
+  MotionProblem problem(parameters, all_, FollowOptions(first(), model_.candidate, options_));
   Adam adam(parameters.size());
   if (state_.iteration > 0) {
     adam.steps = state_.iteration;

@@ -10,7 +10,7 @@
 #include "trainer/fit_model.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/lifted_loss.h"
-#include "trainer/lifted_problem.h"
+#include "trainer/motion_problem.h"
 #include "trainer/network/level_network.h"
 #include "trainer/observer.h"
 #include "twin/error.h"
@@ -95,15 +95,16 @@ SpringMassSystem LevelFit::CorrectedSystem() const {
 void LevelFit::StepCommon() {
   const Parameters parameters = CommonParameters();
   // the differences run in parallel
-  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostLevelRecordings),
-                            MotionOptions(1, kObserverGains[gain_]));
+  MotionProblem problem(parameters,
+                        LiftedMotion(twin_, level_, FitEpisodes(data_, kMostLevelRecordings),
+                                     MotionOptions(1, kObserverGains[gain_])),
+                        0);
   LevenbergMarquardtOptions options;
   options.threads = options_.threads;
   options.difference = FactorDifference(data_.recordings[0]);
   LevenbergMarquardtState state{common_, damping_, mean_square_, false};
-  state = LevenbergMarquardtStep(
-      [&](const Eigen::VectorXd& x) { return LiftedProblem(parameters, motion, 0).Residuals(x); },
-      state, options);
+  state = LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
+                                 state, options);
   common_ = state.x;
   damping_ = state.damping;
   mean_square_ = state.mean_square > 0 ? state.mean_square
@@ -138,12 +139,13 @@ double LevelFit::HeldBackError(const SpringMassSystem& system) const {
   }
   const LiftedMotion motion(twin_, level_, episodes,
                             MotionOptions(options_.threads, kObserverGains[kLastGain - 1]));
-  const auto moved = motion.Run(system, motion.Substeps(system));
+  const auto moved = motion.Run(system, motion.SubstepsOf(system));
   if (!moved) return std::numeric_limits<double>::infinity();
   double sum = 0;
   for (std::size_t e = 0; e < episodes.size(); ++e) {
     const Recording& held_back = held_back_.judged[e].held_back;
-    sum += MeanTrackError(moved->particles[e], held_back, 1, held_back.train_frames).value_or(0);
+    sum +=
+        MeanTrackError((*moved)[e].particles(), held_back, 1, held_back.train_frames).value_or(0);
   }
   return sum / static_cast<double>(episodes.size());
 }
@@ -178,10 +180,10 @@ void LevelFit::StepSprings() {
   const Parameters parameters = SpringParameters();
   LiftedMotion::Options motion_options = MotionOptions(options_.threads);
   motion_options.rollout.growth_limit = std::numeric_limits<double>::infinity();
-  const LiftedMotion motion(twin_, level_, FitEpisodes(data_, kMostSpringRecordings),
-                            motion_options);
-  LiftedProblem problem(parameters, motion,
-                        DirectionDifference(data_.recordings[0], options_.single_precision));
+  MotionProblem problem(
+      parameters,
+      LiftedMotion(twin_, level_, FitEpisodes(data_, kMostSpringRecordings), motion_options),
+      DirectionDifference(data_.recordings[0], options_.single_precision));
   const GaussNewtonState before{springs_, damping_, mean_square_, false};
   GaussNewtonOptions options = SpringPrior(parameters);
   options.conjugate_gradient_steps = kLevelConjugateGradients;

@@ -69,9 +69,9 @@ void ModelChoice::SearchStart(ChosenModel* model) const {
   double least = kInfinity;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
     const Parameters factors = ChosenModel{model->candidate, substeps, {}, {}}.Factors(first());
-    TrackProblem::Options follow = FollowOptions(first(), model->candidate, options_);
+    MotionProblem::Options follow = FollowOptions(first(), model->candidate, options_);
     follow.rollout.observer_gain = kObserverGains[0];
-    TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
+    MotionProblem problem(factors, held_back_.FitEpisodes(), follow);
     for (const Eigen::VectorXd& x : Starts(factors)) {
       if (model->start_substeps == 0) *model = {model->candidate, substeps, x, x};
       const auto r = problem.Residuals(x);
@@ -152,10 +152,10 @@ void ModelChoice::StepSprings(const TrainOptions& options, Contender* contender)
     contender->springs = Eigen::VectorXd::Zero(parameters.size());
     contender->damping = 1e-3;
   }
-  TrackProblem::Options follow = FollowOptions(first(), model.candidate, options);
+  MotionProblem::Options follow = FollowOptions(first(), model.candidate, options);
   follow.rollout.growth_limit = kInfinity;
   follow.rollout.observer_gain = kObserverGains[contender->gain];
-  TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
+  MotionProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
   prior.conjugate_gradient_steps = kChoiceConjugateGradients;
   const GaussNewtonState before{contender->springs, contender->damping, contender->mean_square,
