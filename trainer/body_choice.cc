@@ -127,9 +127,9 @@ void RoundOfChoice::SearchStart(ChosenBody* model) const {
   double least = kInfinity;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
     const Parameters factors = ChosenBody{model->body, substeps, {}, {}}.ParametersOf(first_);
-    TrackProblem::Options follow = FollowOptions(first_, model->body, options_);
+    MotionProblem::Options follow = FollowOptions(first_, model->body, options_);
     follow.rollout.observer_gain = kObserverGains[0];
-    TrackProblem problem(factors, held_back_.FitEpisodes(), follow);
+    MotionProblem problem(factors, held_back_.FitEpisodes(), follow);
     for (const Eigen::VectorXd& x : Starts(factors, *model->body.kind)) {
       if (model->start_substeps == 0) *model = {model->body, substeps, x, x};
       const auto r = problem.Residuals(x);
@@ -176,10 +176,10 @@ StepReport RoundOfChoice::StepSprings(const TrainOptions& options, RoundState* s
     springs = Eigen::VectorXd::Zero(parameters.size());
     state->damping = 1e-3;
   }
-  TrackProblem::Options follow = FollowOptions(first_, model.body, options);
+  MotionProblem::Options follow = FollowOptions(first_, model.body, options);
   follow.rollout.growth_limit = kInfinity;
   follow.rollout.observer_gain = kObserverGains[state->gain];
-  TrackProblem problem(parameters, held_back_.FitEpisodes(), follow);
+  MotionProblem problem(parameters, held_back_.FitEpisodes(), follow);
   GaussNewtonOptions prior = SpringPrior(parameters);
   prior.conjugate_gradient_steps = kChoiceConjugateGradients;
   const GaussNewtonState before{springs, state->damping, state->mean_square, false};

@@ -40,12 +40,12 @@ SpringMassSystem ChosenBody::System(const Recording& recording) const {
 LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
   const Recording& recording = *episodes.at(0).recording;
-  TrackProblem::Options follow = FollowOptions(recording, model.body, options);
+  MotionProblem::Options follow = FollowOptions(recording, model.body, options);
   follow.threads = 1;  // the differences run in parallel
   if (model.body.kind->has_single_springs()) follow.most_substeps /= 2;  // single springs want room
   follow.rollout.observer_gain = gain;
   const Parameters factors = model.ParametersOf(recording);
-  TrackProblem problem(factors, episodes, follow);
+  MotionProblem problem(factors, episodes, follow);
   LevenbergMarquardtOptions levenberg = model.body.kind->FactorOptions(recording);
   levenberg.threads = options.threads;
   LevenbergMarquardtState state;

@@ -72,9 +72,9 @@ double DirectionDifference(const Recording& recording, bool single_precision) {
   return recording.ground || single_precision ? 1e-3 : 1e-5;
 }
 
-TrackProblem::Options FollowOptions(const Recording& recording, const Body& body,
-                                    const TrainOptions& options) {
-  TrackProblem::Options problem;
+MotionProblem::Options FollowOptions(const Recording& recording, const Body& body,
+                                     const TrainOptions& options) {
+  MotionProblem::Options problem;
   problem.rollout.single_precision = options.single_precision;
   problem.rollout.controller_velocity = body.controller_velocity;
   problem.rollout.substeps = options.substeps;

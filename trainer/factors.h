@@ -6,8 +6,8 @@
 
 #include "trainer/bodies/spring_net.h"
 #include "trainer/gauss_newton.h"
+#include "trainer/motion_problem.h"
 #include "trainer/parameters.h"
-#include "trainer/track_problem.h"
 #include "trainer/train_options.h"
 
 namespace physpring {
@@ -30,8 +30,8 @@ double DirectionDifference(const Recording& recording, bool single_precision);
 
 // No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);
 // for common factors half of that, so that single springs find room.
-TrackProblem::Options FollowOptions(const Recording& recording, const Body& body,
-                                    const TrainOptions& options);
+MotionProblem::Options FollowOptions(const Recording& recording, const Body& body,
+                                     const TrainOptions& options);
 
 }  // namespace physpring
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/free_motion_error.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "trainer/factors.h"
@@ -11,16 +12,17 @@ FreeMotionError::FreeMotionError(const ChosenBody& model, std::vector<Episode> e
                                  const TrainOptions& options)
     : factors_(model.ParametersOf(*episodes.at(0).recording)),
       follow_(FollowOptions(*episodes[0].recording, model.body, options)),
-      problem_(factors_, episodes, follow_) {
+      motion_(episodes, follow_) {
   for (const Episode& episode : episodes) judged_.push_back({episode, episode.recording});
 }
 
 double FreeMotionError::operator()(const Eigen::VectorXd& factors) const {
   const SpringMassSystem system = factors_.Apply(factors);
   RolloutOptions rollout = follow_.rollout;
-  rollout.substeps = problem_.Substeps(system);
-  return rollout.substeps == 0 ? std::numeric_limits<double>::infinity()
-                               : GeometricTrackError(system, judged_, rollout);
+  const LiftedMotion::Substeps substeps = motion_.SubstepsOf(system);
+  if (substeps.empty()) return std::numeric_limits<double>::infinity();
+  rollout.substeps = *std::max_element(substeps.begin(), substeps.end());
+  return GeometricTrackError(system, judged_, rollout);
 }
 
 }  // namespace physpring

@@ -24,8 +24,8 @@ class FreeMotionError {
 
  private:
   Parameters factors_;
-  TrackProblem::Options follow_;
-  TrackProblem problem_;  // for its sub-steps
+  MotionProblem::Options follow_;
+  LiftedMotion motion_;  // for its sub-steps
   std::vector<JudgedEpisode> judged_;
 };
 

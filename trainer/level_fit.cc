@@ -11,7 +11,7 @@
 #include "trainer/level_model.h"
 #include "trainer/levenberg_marquardt.h"
 #include "trainer/lifted_loss.h"
-#include "trainer/lifted_problem.h"
+#include "trainer/motion_problem.h"
 #include "trainer/network/corrections_fit.h"
 #include "trainer/network/level_network.h"
 #include "trainer/observer.h"
@@ -47,14 +47,14 @@ struct CommonFit {
 StepReport StepCommon(const LevelModel& model, int threads, int last_gain, CommonFit* fit) {
   const Parameters parameters = model.CommonParameters();
   // the differences run in parallel
-  const LiftedMotion motion = model.Motion(1, kObserverGains[fit->gain], kMostLevelRecordings);
+  MotionProblem problem(parameters,
+                        model.Motion(1, kObserverGains[fit->gain], kMostLevelRecordings), 0);
   LevenbergMarquardtOptions options;
   options.threads = threads;
   options.difference = FactorDifference(model.first());
   LevenbergMarquardtState state{fit->common, fit->damping, fit->mean_square, false};
-  state = LevenbergMarquardtStep(
-      [&](const Eigen::VectorXd& x) { return LiftedProblem(parameters, motion, 0).Residuals(x); },
-      state, options);
+  state = LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
+                                 state, options);
   fit->common = state.x;
   fit->damping = state.damping;
   fit->mean_square = state.mean_square > 0 ? state.mean_square : kInfinity;
@@ -138,8 +138,7 @@ struct SpringsOfLevel {
 
 StepReport StepSprings(const LevelModel& model, const Parameters& parameters, SpringsOfLevel* fit) {
   const TrainOptions& options = model.options();
-  const LiftedMotion motion = model.RoughMotion(kMostSpringRecordings);
-  LiftedProblem problem(parameters, motion,
+  MotionProblem problem(parameters, model.RoughMotion(kMostSpringRecordings),
                         DirectionDifference(model.first(), options.single_precision));
   GaussNewtonOptions prior = SpringPrior(parameters);
   prior.conjugate_gradient_steps = kLevelConjugateGradients;

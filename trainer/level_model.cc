@@ -89,12 +89,13 @@ double LevelModel::HeldBackError(const SpringMassSystem& system) const {
   }
   const LiftedMotion motion(twin_, level_, episodes,
                             MotionOptions(options_.threads, kObserverGains[kLastGain - 1]));
-  const auto moved = motion.Run(system, motion.Substeps(system));
+  const auto moved = motion.Run(system, motion.SubstepsOf(system));
   if (!moved) return std::numeric_limits<double>::infinity();
   double sum = 0;
   for (std::size_t e = 0; e < episodes.size(); ++e) {
     const Recording& held_back = held_back_.judged[e].held_back;
-    sum += MeanTrackError(moved->particles[e], held_back, 1, held_back.train_frames).value_or(0);
+    sum +=
+        MeanTrackError((*moved)[e].particles(), held_back, 1, held_back.train_frames).value_or(0);
   }
   return sum / static_cast<double>(episodes.size());
 }

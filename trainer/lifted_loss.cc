@@ -7,17 +7,20 @@ namespace physpring {
 
 std::optional<LiftedLoss> ComputeLiftedLoss(const LiftedMotion& motion,
                                             const SpringMassSystem& system) {
-  const auto moved = motion.Run(system, motion.Substeps(system));
+  const auto moved = motion.Run(system, motion.SubstepsOf(system));
   if (!moved) return {};
-  LiftedMotion::Frames bars = LiftedMotion::ZerosLike(moved->particles);
+  std::vector<std::vector<Points>> bars;
   double loss = 0;
   for (int e = 0; e < motion.episode_count(); ++e) {
-    for (int frame = 1; frame < motion.frames(e); ++frame) {
-      loss +=
-          AddFrameLoss(moved->particles[e][frame], motion.recording(e), frame, {}, &bars[e][frame]);
+    const std::vector<Points>& particles = (*moved)[e].particles();
+    bars.push_back(LiftedMotion::ZerosLike(particles));
+    const Episode& episode = motion.episode(e);
+    for (int frame = 1; frame < episode.frames; ++frame) {
+      loss += AddFrameLoss(particles[frame], *episode.recording, frame, {}, &bars[e][frame]);
     }
   }
-  return LiftedLoss{loss, motion.Adjoint(system, *moved, bars, nullptr)};
+  return LiftedLoss{loss, motion.Adjoint(
+                              system, *moved, [&](int e) { return bars[e]; }, nullptr)};
 }
 
 }  // namespace physpring

@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "trainer/parallel.h"
 #include "twin/hierarchy.h"
 
 namespace physpring {
 namespace {
+
+// Sub-step as a part of the largest stable one, at most, where the number of sub-steps is given.
+constexpr double kLargestSafety = 0.95;
 
 // What a rollout of the level's nodes, and, where there is one, an observer of it need of the
 // recording.
@@ -37,82 +41,104 @@ Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool
 
 }  // namespace
 
-LiftedMotion::LiftedMotion(const Twin& twin, int level, const std::vector<Episode>& episodes,
+LiftedMotion::LiftedMotion(std::vector<Episode> episodes, const Options& options)
+    : episodes_(std::move(episodes)), options_(options) {
+  options_.rollout.threads = ThreadsOfOne();
+}
+
+LiftedMotion::LiftedMotion(const Twin& twin, int level, std::vector<Episode> episodes,
                            const Options& options)
-    : episodes_(episodes), options_(options) {
-  for (const Episode& episode : episodes) {
+    : LiftedMotion(std::move(episodes), options) {
+  for (const Episode& episode : episodes_) {
     const Recording& recording = *episode.recording;
     carried_.push_back(ForNodes(twin, level, recording, options.rollout.observer_gain > 0));
     lifts_.emplace_back(twin, level, recording.start.leftCols(recording.particle_count()));
   }
 }
 
-void LiftedMotion::ForEachFrame(const std::function<void(int, int)>& work) const {
-  std::vector<std::array<int, 2>> frames;
-  for (int e = 0; e < episode_count(); ++e) {
-    for (int frame = 0; frame < episodes_[e].frames; ++frame) frames.push_back({e, frame});
-  }
-  ParallelFor(static_cast<int>(frames.size()), options_.threads,
-              [&](int i) { work(frames[i][0], frames[i][1]); });
-}
-
-int LiftedMotion::Substeps(const SpringMassSystem& system) const {
-  if (options_.rollout.substeps > 0) return options_.rollout.substeps;
+LiftedMotion::Substeps LiftedMotion::SubstepsOf(const SpringMassSystem& system) const {
+  if (options_.rollout.substeps > 0) return Substeps(episodes_.size(), options_.rollout.substeps);
   const StabilityBound bound = ComputeStabilityBound(system);
-  int substeps = 1;
-  for (const Recording& recording : carried_) {
-    substeps = std::max(substeps, StableSubsteps(bound, 1 / recording.fps, options_.safety));
+  Substeps substeps;
+  for (const Episode& episode : episodes_) {
+    const double fps = episode.recording->fps;
+    const int needed = StableSubsteps(bound, 1 / fps, options_.safety);
+    if (needed > options_.most_substeps || needed * fps > options_.most_rate) return {};
+    substeps.push_back(std::max(needed, static_cast<int>(std::ceil(options_.least_rate / fps))));
   }
-  return substeps > options_.most_substeps ? 0 : substeps;
+  return substeps;
 }
 
-std::optional<LiftedMotion::Motion> LiftedMotion::Run(const SpringMassSystem& system,
-                                                      int substeps) const {
-  if (substeps == 0) return {};
-  RolloutOptions rollout = options_.rollout;
-  rollout.substeps = substeps;
-  rollout.threads = episode_count() == 1 ? options_.threads : 1;
-  Motion motion;
-  motion.rollouts.resize(episodes_.size());
-  motion.particles.resize(episodes_.size());
-  ParallelFor(episode_count(), options_.threads, [&](int e) {
-    motion.rollouts[e] = RollOut(system, {&carried_[e], episodes_[e].frames}, rollout);
-    motion.particles[e].resize(episodes_[e].frames);
-  });
-  for (const auto& one : motion.rollouts) {
-    if (one->diverged()) return {};
+bool LiftedMotion::AreEnough(const Substeps& substeps, const SpringMassSystem& system) const {
+  const StabilityBound bound = ComputeStabilityBound(system);
+  for (std::size_t e = 0; e < substeps.size(); ++e) {
+    const double fps = episodes_[e].recording->fps;
+    if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps[e]) return false;
+    if (StableSubsteps(bound, 1 / fps, options_.safety) * fps > options_.most_rate) return false;
   }
-  ForEachFrame([&](int e, int frame) {
-    motion.particles[e][frame] = lifts_[e].Apply(motion.rollouts[e]->positions()[frame]);
+  return true;
+}
+
+std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMassSystem& system,
+                                                         const Substeps& substeps) const {
+  const Episode& episode = episodes_[e];
+  Motion motion;
+  if (episode.frames < 2) return motion;
+  RolloutOptions options = options_.rollout;
+  options.substeps = substeps[e];
+  const Recording* recording = carried_.empty() ? episode.recording : &carried_[e];
+  motion.rollout = RollOut(system, {recording, episode.frames}, options);
+  if (motion.rollout->diverged()) return {};
+  if (lifts_.empty()) return motion;
+  motion.lifted.resize(episode.frames);
+  ParallelFor(episode.frames, ThreadsOfOne(), [&](int frame) {
+    motion.lifted[frame] = lifts_[e].Apply(motion.rollout->positions()[frame]);
   });
   return motion;
 }
 
-SystemGradient LiftedMotion::Adjoint(const SpringMassSystem& system, const Motion& motion,
-                                     const Frames& particles_bar, int* cuts) const {
-  Frames nodes_bar = particles_bar;
-  ForEachFrame([&](int e, int frame) {
-    nodes_bar[e][frame] =
-        lifts_[e].Adjoint(motion.rollouts[e]->positions()[frame], particles_bar[e][frame]);
-  });
-  std::vector<std::optional<RolloutAdjoint>> adjoints(episodes_.size());
+std::optional<std::vector<LiftedMotion::Motion>> LiftedMotion::Run(const SpringMassSystem& system,
+                                                                   const Substeps& substeps) const {
+  if (substeps.empty()) return {};
+  std::vector<std::optional<Motion>> motions(episodes_.size());
   ParallelFor(episode_count(), options_.threads,
-              [&](int e) { adjoints[e] = motion.rollouts[e]->Adjoint(nodes_bar[e]); });
+              [&](int e) { motions[e] = RunOne(e, system, substeps); });
+  std::vector<Motion> all;
+  for (auto& motion : motions) {
+    if (!motion) return {};
+    all.push_back(std::move(*motion));
+  }
+  return all;
+}
+
+SystemGradient LiftedMotion::Adjoint(const SpringMassSystem& system,
+                                     const std::vector<Motion>& motions,
+                                     const ParticlesBar& particles_bar, int* cuts) const {
+  std::vector<std::optional<RolloutAdjoint>> adjoints(episodes_.size());
+  ParallelFor(episode_count(), options_.threads, [&](int e) {
+    Rollout* rollout = motions[e].rollout.get();
+    if (!rollout) return;
+    std::vector<Points> bars = particles_bar(e);
+    if (!lifts_.empty()) {
+      ParallelFor(static_cast<int>(bars.size()), ThreadsOfOne(), [&](int frame) {
+        bars[frame] = lifts_[e].Adjoint(rollout->positions()[frame], bars[frame]);
+      });
+    }
+    adjoints[e] = rollout->Adjoint(bars);
+  });
   SystemGradient sum(system);
   if (cuts) *cuts = 0;
   for (const auto& adjoint : adjoints) {
+    if (!adjoint) continue;
     sum += adjoint->gradient;
     if (cuts) *cuts += adjoint->cuts;
   }
   return sum;
 }
 
-LiftedMotion::Frames LiftedMotion::ZerosLike(const Frames& particles) {
-  Frames zeros = particles;
-  for (auto& frames : zeros) {
-    for (Points& frame : frames) frame.setZero();
-  }
-  return zeros;
+std::vector<Points> LiftedMotion::ZerosLike(std::vector<Points> frames) {
+  for (Points& frame : frames) frame.setZero();
+  return frames;
 }
 
 std::optional<double> MeanTrackError(const std::vector<Points>& particles,

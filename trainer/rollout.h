@@ -12,16 +12,10 @@
 #include <memory>
 #include <vector>
 
-#include "twin/recording.h"
+#include "trainer/episode.h"
 #include "twin/simulator.h"
 
 namespace physpring {
-
-// What to roll out: a recording from its start up to frame `frames` - 1.
-struct Episode {
-  const Recording* recording;
-  int frames;  // >= 2
-};
 
 struct RolloutOptions {
   bool single_precision = false;

@@ -81,7 +81,7 @@ class SpringFit {
   const TrainOptions& options_;
   Parameters parameters_;
   GaussNewtonOptions prior_;
-  TrackProblem::Options follow_;
+  MotionProblem::Options follow_;
   std::vector<Episode> episodes_;
 };
 
@@ -95,10 +95,10 @@ double SpringFit::PartOfGaussNewton(const GaussNewtonFit& fit) const {
 }
 
 StepReport SpringFit::StepGaussNewton(GaussNewtonFit* fit) const {
-  TrackProblem::Options follow = follow_;
+  MotionProblem::Options follow = follow_;
   follow.rollout.growth_limit = kInfinity;
   follow.rollout.observer_gain = kObserverGains[fit->gain];
-  TrackProblem problem(parameters_, episodes_, follow);
+  MotionProblem problem(parameters_, episodes_, follow);
   const GaussNewtonState before{fit->x, fit->damping, fit->mean_square, false};
   const GaussNewtonState after = GaussNewtonStep(&problem, before, prior_);
   fit->x = after.x;
@@ -125,7 +125,7 @@ StepReport SpringFit::StepGaussNewton(GaussNewtonFit* fit) const {
 // One iteration on |r|^2 / variance + prior, the variance being the current mean of r^2. Where it
 // went astray it goes on from the best, half as fast and with a fresh momentum.
 StepReport SpringFit::StepAdam(AdamFit* fit) const {
-  TrackProblem problem(parameters_, episodes_, follow_);
+  MotionProblem problem(parameters_, episodes_, follow_);
   const auto r = problem.Linearise(fit->x);
   const double mean_square = r ? r->squaredNorm() / static_cast<double>(r->size()) : kInfinity;
   if (mean_square < fit->best_mean_square) {

@@ -28,7 +28,7 @@ TEST(LevelModel, SoftensAProjectionThatNeedsMoreSubstepsThanLevel0) {
   EXPECT_LT(softened.stiffness.maxCoeff(), level.stiffness.maxCoeff());
   EXPECT_LE(model.SubstepsPerSecond(softened), twin.levels[0].substeps_per_second);
   const LiftedMotion motion = model.Motion(1, 0, 1);
-  EXPECT_TRUE(motion.Run(softened, motion.Substeps(softened)).has_value());
+  EXPECT_TRUE(motion.Run(softened, motion.SubstepsOf(softened)).has_value());
 }
 
 }  // namespace

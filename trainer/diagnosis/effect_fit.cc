@@ -140,8 +140,8 @@ EffectProblem EffectFitting::Problem(const EffectFit& fit, double gain) const {
   return MakeProblem(Model(fit), bodies_[fit.body], gain, 1);
 }
 
-EffectProblem EffectFitting::MakeProblem(EffectModel model, const DiagnosisBody& body, double gain,
-                                         int threads) const {
+EffectProblem EffectFitting::MakeProblem(const EffectModel& model, const DiagnosisBody& body,
+                                         double gain, int threads) const {
   EffectProblem::Options options;
   options.threads = threads;
   options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
@@ -151,12 +151,13 @@ EffectProblem EffectFitting::MakeProblem(EffectModel model, const DiagnosisBody&
     const double own = DiagnosisRate(body.base, recordings_[0].recording->fps);
     options.most_rate = std::max(options.most_rate, kTrustedRoom * own);
   }
-  options.controller_velocity = body.controller_velocity;
+  options.rollout.controller_velocity = body.controller_velocity;
   // an observer is for finding the way, which needs fewer digits
-  options.single_precision = gain > 0;
-  options.difference = DirectionDifference(*recordings_[0].recording, options.single_precision);
-  options.observer_gain = gain;
-  return EffectProblem(std::move(model), gain > 0 ? followed_ : recordings_, options);
+  options.rollout.single_precision = gain > 0;
+  options.difference =
+      DirectionDifference(*recordings_[0].recording, options.rollout.single_precision);
+  options.rollout.observer_gain = gain;
+  return EffectProblem(model, gain > 0 ? followed_ : recordings_, options);
 }
 
 bool EffectFitting::DescendOne(double gain, int steps, int threads, EffectFit* fit) const {

@@ -80,7 +80,7 @@ class EffectFitting {
  private:
   SpringMassSystem Base(std::size_t body, double start_substeps) const;
   bool Predict(EffectProblem* problem, const Eigen::VectorXd& x, EffectFit* fit) const;
-  EffectProblem MakeProblem(EffectModel model, const DiagnosisBody& body, double gain,
+  EffectProblem MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
                             int threads) const;
   bool DescendOne(double gain, int steps, int threads, EffectFit* fit) const;
 

@@ -5,15 +5,17 @@
 
 #include <vector>
 
-#include "twin/recording.h"
+#include "trainer/episode.h"
 
 namespace physpring {
 
 // A recording with the use of each of its frames. Frame 0 has none: it is the start.
 struct SplitRecording {
-  enum class Use { kNone, kFit, kHeld };
+  using Use = FrameUse;
   const Recording* recording;
   std::vector<Use> use;
+
+  Episode All() const { return {recording, static_cast<int>(use.size()), &use}; }
 
   int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
   int seen(Use wanted) const;  // frames of that use in which a point is seen

@@ -52,11 +52,13 @@ double TopologyFit::PredictionError(const Assignment& assignment) const {
   options.most_substeps = std::numeric_limits<int>::max();
   const LiftedMotion level(twin, static_cast<int>(twin_.levels.size()), episodes_, options);
   const SpringMassSystem& system = twin.levels.back().system;
-  const auto moved = level.Run(system, level.Substeps(system));
+  const auto moved = level.Run(system, level.SubstepsOf(system));
   if (!moved) return kDiverged;
   double sum = 0;
   for (int e = 0; e < level.episode_count(); ++e) {
-    sum += MeanTrackError(moved->particles[e], level.recording(e), 1, level.frames(e)).value_or(0);
+    sum += MeanTrackError((*moved)[e].particles(), *level.episode(e).recording, 1,
+                          level.episode(e).frames)
+               .value_or(0);
   }
   return sum / level.episode_count();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/track_problem.h"
+#include "trainer/motion_problem.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "tests/support/random_system.h"
 #include "tests/support/swung_rope.h"
+#include "trainer/parameters.h"
 #include "trainer/start_system.h"
 
 namespace physpring {
@@ -26,7 +27,7 @@ Eigen::VectorXd Uniform(Eigen::Index size, double bound, std::uint64_t seed) {
 struct Case {
   std::vector<Recording> recordings = {SwungRope(kPoints, 6), SwungRope(kPoints, 4)};
   Parameters parameters;
-  TrackProblem::Options options;
+  MotionProblem::Options options;
 
   Case() : parameters(Start(), {true, true, true, false}) {
     for (Recording& recording : recordings) MoveAs(Start(), true, &recording);
@@ -40,12 +41,14 @@ struct Case {
     ScaleToSubsteps(1 / recordings[0].fps, 8, 0.7, &system);
     return system;
   }
-  TrackProblem Problem() const {
-    return TrackProblem(parameters, {{&recordings[0], 6}, {&recordings[1], 4}}, options);
+  std::vector<Episode> Episodes() const { return {{&recordings[0], 6}, {&recordings[1], 4}}; }
+  MotionProblem Problem() const { return MotionProblem(parameters, Episodes(), options); }
+  LiftedMotion::Substeps Substeps() const {
+    return LiftedMotion(Episodes(), options).SubstepsOf(Start());
   }
 };
 
-TEST(TrackProblem, ResidualsAreOfSeenPointsOfAllRecordings) {
+TEST(MotionProblem, ResidualsAreOfSeenPointsOfAllRecordings) {
   const Case c;
   const auto r = c.Problem().Residuals(Uniform(c.parameters.size(), 0.1, 1));
   ASSERT_TRUE(r);
@@ -54,18 +57,18 @@ TEST(TrackProblem, ResidualsAreOfSeenPointsOfAllRecordings) {
   EXPECT_GT(r->norm(), 0);
 }
 
-TEST(TrackProblem, TheSystemThatMovedTheRecordingsHasNoResiduals) {
+TEST(MotionProblem, TheSystemThatMovedTheRecordingsHasNoResiduals) {
   const Case c;
-  TrackProblem problem = c.Problem();
+  MotionProblem problem = c.Problem();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(c.parameters.size());
   // Predict may take other sub-steps
   EXPECT_LT(problem.Residuals(zero)->norm(),
             0.2 * problem.Residuals(Uniform(zero.size(), 1, 1))->norm());
 }
 
-TEST(TrackProblem, JacobianTransposedTimesIsTheTranspose) {
+TEST(MotionProblem, JacobianTransposedTimesIsTheTranspose) {
   const Case c;
-  TrackProblem problem = c.Problem();
+  MotionProblem problem = c.Problem();
   const Eigen::VectorXd x = Uniform(c.parameters.size(), 0.1, 1);
   const Eigen::VectorXd r = *problem.Linearise(x);
   for (std::uint64_t seed = 2; seed < 6; ++seed) {
@@ -77,18 +80,18 @@ TEST(TrackProblem, JacobianTransposedTimesIsTheTranspose) {
   }
 }
 
-TEST(TrackProblem, LineariseGivesTheResiduals) {
+TEST(MotionProblem, LineariseGivesTheResiduals) {
   const Case c;
-  TrackProblem problem = c.Problem();
+  MotionProblem problem = c.Problem();
   const Eigen::VectorXd x = Uniform(c.parameters.size(), 0.1, 1);
   EXPECT_EQ(*problem.Linearise(x), *problem.Residuals(x));
 }
 
-TEST(TrackProblem, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(MotionProblem, GivesTheSameBitsForAnyNumberOfThreads) {
   Case c;
-  TrackProblem one = c.Problem();
+  MotionProblem one = c.Problem();
   c.options.threads = 2;
-  TrackProblem two = c.Problem();
+  MotionProblem two = c.Problem();
   const Eigen::VectorXd x = Uniform(c.parameters.size(), 0.1, 1);
   const Eigen::VectorXd r = *one.Linearise(x);
   EXPECT_EQ(r, *two.Linearise(x));
@@ -96,19 +99,19 @@ TEST(TrackProblem, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.JacobianTransposedTimes(r), two.JacobianTransposedTimes(r));
 }
 
-TEST(TrackProblem, CannotEvaluateASystemThatNeedsTooManySubsteps) {
+TEST(MotionProblem, CannotEvaluateASystemThatNeedsTooManySubsteps) {
   Case c;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(c.parameters.size());
-  const int needed = c.Problem().Substeps(c.Start());
+  const int needed = c.Substeps().at(0);
   EXPECT_NEAR(needed, 8, 1);
   c.options.most_substeps = needed;
   EXPECT_TRUE(c.Problem().Residuals(zero));
   c.options.most_substeps = needed - 1;
   EXPECT_FALSE(c.Problem().Residuals(zero));
-  EXPECT_EQ(c.Problem().Substeps(c.Start()), 0);
+  EXPECT_TRUE(c.Substeps().empty());
 }
 
-TEST(TrackProblem, CannotEvaluateASystemThatDiverges) {
+TEST(MotionProblem, CannotEvaluateASystemThatDiverges) {
   Case c;
   c.options.rollout.substeps = 3;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(c.parameters.size());
