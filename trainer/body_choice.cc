@@ -145,7 +145,7 @@ double RoundOfChoice::TrackError(const SpringMassSystem& system, const Body& bod
                                  double gain) const {
   RolloutOptions options = FollowOptions(first_, body, options_).rollout;
   options.observer_gain = gain;
-  return GeometricTrackError(system, held_back_.JudgedEpisodes(), options);
+  return GeometricTrackError(system, held_back_.JudgedEpisodes(), FrameUse::kHeld, options);
 }
 
 StepReport RoundOfChoice::StepCommonFactors(const TrainOptions& options, RoundState* state) const {

@@ -39,7 +39,7 @@ SpringMassSystem ChosenBody::System(const Recording& recording) const {
 
 LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
-  const Recording& recording = *episodes.at(0).recording;
+  const Recording recording = OnlyFitFrames(episodes.at(0));
   MotionProblem::Options follow = FollowOptions(recording, model.body, options);
   follow.threads = 1;  // the differences run in parallel
   if (model.body.kind->has_single_springs()) follow.most_substeps /= 2;  // single springs want room

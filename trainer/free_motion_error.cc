@@ -12,9 +12,8 @@ FreeMotionError::FreeMotionError(const ChosenBody& model, std::vector<Episode> e
                                  const TrainOptions& options)
     : factors_(model.ParametersOf(*episodes.at(0).recording)),
       follow_(FollowOptions(*episodes[0].recording, model.body, options)),
-      motion_(episodes, follow_) {
-  for (const Episode& episode : episodes) judged_.push_back({episode, episode.recording});
-}
+      motion_(episodes, follow_),
+      episodes_(std::move(episodes)) {}
 
 double FreeMotionError::operator()(const Eigen::VectorXd& factors) const {
   const SpringMassSystem system = factors_.Apply(factors);
@@ -22,7 +21,7 @@ double FreeMotionError::operator()(const Eigen::VectorXd& factors) const {
   const LiftedMotion::Substeps substeps = motion_.SubstepsOf(system);
   if (substeps.empty()) return std::numeric_limits<double>::infinity();
   rollout.substeps = *std::max_element(substeps.begin(), substeps.end());
-  return GeometricTrackError(system, judged_, rollout);
+  return GeometricTrackError(system, episodes_, FrameUse::kFit, rollout);
 }
 
 }  // namespace physpring

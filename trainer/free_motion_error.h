@@ -26,7 +26,7 @@ class FreeMotionError {
   Parameters factors_;
   MotionProblem::Options follow_;
   LiftedMotion motion_;  // for its sub-steps
-  std::vector<JudgedEpisode> judged_;
+  std::vector<Episode> episodes_;
 };
 
 }  // namespace physpring

@@ -2,7 +2,6 @@
 #include "trainer/held_back.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 namespace physpring {
@@ -18,33 +17,34 @@ bool IsHeldBack(int frame, int last) {
   return part % kOneHeldBackOf == kOneHeldBackOf - 1;
 }
 
-// A copy in which, of the fit frames, only those that are held back are seen, or all others.
-Recording OnlyFrames(const Recording& recording, bool held_back) {
-  Recording part = recording;
+// The uses of a recording's fit frames.
+SplitRecording SplitFitFrames(const Recording& recording, FrameUse held_back, FrameUse others) {
+  SplitRecording split = UseAll(recording, FrameUse::kNone);
   const int last = recording.train_frames - 1;
   for (int frame = 1; frame <= last; ++frame) {
-    if (last > 1 && IsHeldBack(frame, last) != held_back) {
-      part.points[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
+    split.use[static_cast<std::size_t>(frame)] = IsHeldBack(frame, last) ? held_back : others;
   }
-  return part;
+  return split;
+}
+
+// One in which all fit frames have that use.
+SplitRecording UseFitFrames(const Recording& recording, FrameUse use) {
+  return SplitFitFrames(recording, use, use);
+}
+
+std::vector<Episode> EpisodesOf(const std::vector<SplitRecording>& recordings) {
+  std::vector<Episode> episodes;
+  for (const SplitRecording& split : recordings) {
+    episodes.push_back(split.First(split.recording->train_frames));
+  }
+  return episodes;
 }
 
 }  // namespace
 
-std::vector<Episode> HeldBack::FitEpisodes() const {
-  std::vector<Episode> episodes;
-  for (const Recording& recording : fit) episodes.push_back({&recording, recording.train_frames});
-  return episodes;
-}
+std::vector<Episode> HeldBack::FitEpisodes() const { return EpisodesOf(fit); }
 
-std::vector<JudgedEpisode> HeldBack::JudgedEpisodes() const {
-  std::vector<JudgedEpisode> episodes;
-  for (const Judged& by : judged) {
-    episodes.push_back({{by.whole, by.whole->train_frames}, &by.held_back});
-  }
-  return episodes;
-}
+std::vector<Episode> HeldBack::JudgedEpisodes() const { return EpisodesOf(judged); }
 
 std::vector<Episode> FitEpisodes(const FitData& data, int most) {
   std::vector<Episode> episodes;
@@ -78,14 +78,19 @@ HeldBack HoldBack(const FitData& data, int most) {
   }
   if (judged.empty()) {
     for (const Recording* recording : SpreadEvenly(fit, most)) {
-      split.fit.push_back(OnlyFrames(*recording, false));
-      split.judged.push_back({recording, OnlyFrames(*recording, true)});
+      // a single frame is on both sides
+      const bool single = recording->train_frames == 2;
+      split.fit.push_back(
+          SplitFitFrames(*recording, single ? FrameUse::kFit : FrameUse::kNone, FrameUse::kFit));
+      split.judged.push_back(SplitFitFrames(*recording, FrameUse::kHeld, FrameUse::kFit));
     }
     return split;
   }
-  for (const Recording* recording : SpreadEvenly(fit, most)) split.fit.push_back(*recording);
+  for (const Recording* recording : SpreadEvenly(fit, most)) {
+    split.fit.push_back(UseFitFrames(*recording, FrameUse::kFit));
+  }
   for (const Recording* recording : SpreadEvenly(judged, most)) {
-    split.judged.push_back({recording, *recording});
+    split.judged.push_back(UseFitFrames(*recording, FrameUse::kHeld));
   }
   return split;
 }

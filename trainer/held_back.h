@@ -6,23 +6,18 @@
 
 #include <vector>
 
+#include "trainer/episode.h"
 #include "trainer/fit_data.h"
-#include "trainer/rollout.h"
-#include "trainer/track_error.h"
 
 namespace physpring {
 
 struct HeldBack {
-  struct Judged {
-    const Recording* whole;  // as it was measured
-    Recording held_back;     // the same, with nothing but the held-back frames seen
-  };
+  std::vector<SplitRecording> fit;     // the frames to fit; the others have no use
+  std::vector<SplitRecording> judged;  // what is held back, and the frames to fit between
 
-  std::vector<Recording> fit;  // with the held-back frames unseen
-  std::vector<Judged> judged;
-
-  std::vector<Episode> FitEpisodes() const;           // all fit frames; *this must outlive them
-  std::vector<JudgedEpisode> JudgedEpisodes() const;  // the same of those that judge
+  // All fit frames of the recordings; *this must outlive them. Judged are those that are held back.
+  std::vector<Episode> FitEpisodes() const;
+  std::vector<Episode> JudgedEpisodes() const;
 };
 
 // With four or more continuous runs, whole runs are held back (a quarter of them, spread evenly);

@@ -8,6 +8,7 @@
 #include "trainer/factors.h"
 #include "trainer/network/level_network.h"
 #include "trainer/observer.h"
+#include "trainer/track_error.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -83,21 +84,15 @@ LiftedMotion LevelModel::RoughMotion(int most) const {
 }
 
 double LevelModel::HeldBackError(const SpringMassSystem& system) const {
-  std::vector<Episode> episodes;
-  for (const HeldBack::Judged& judged : held_back_.judged) {
-    episodes.push_back({judged.whole, judged.whole->train_frames});
-  }
-  const LiftedMotion motion(twin_, level_, episodes,
+  const LiftedMotion motion(twin_, level_, held_back_.JudgedEpisodes(),
                             MotionOptions(options_.threads, kObserverGains[kLastGain - 1]));
   const auto moved = motion.Run(system, motion.SubstepsOf(system));
   if (!moved) return std::numeric_limits<double>::infinity();
   double sum = 0;
-  for (std::size_t e = 0; e < episodes.size(); ++e) {
-    const Recording& held_back = held_back_.judged[e].held_back;
-    sum +=
-        MeanTrackError((*moved)[e].particles(), held_back, 1, held_back.train_frames).value_or(0);
+  for (int e = 0; e < motion.episode_count(); ++e) {
+    sum += MeanTrackError(motion.episode(e), FrameUse::kHeld, (*moved)[e].particles());
   }
-  return sum / static_cast<double>(episodes.size());
+  return sum / motion.episode_count();
 }
 
 int LevelModel::SubstepsPerSecond(const SpringMassSystem& system) const {

@@ -15,8 +15,13 @@ std::optional<LiftedLoss> ComputeLiftedLoss(const LiftedMotion& motion,
     const std::vector<Points>& particles = (*moved)[e].particles();
     bars.push_back(LiftedMotion::ZerosLike(particles));
     const Episode& episode = motion.episode(e);
+    LossOptions options;
     for (int frame = 1; frame < episode.frames; ++frame) {
-      loss += AddFrameLoss(particles[frame], *episode.recording, frame, {}, &bars[e][frame]);
+      // a surface measured apart from the points counts in all frames
+      const bool fitted = episode.UseOf(frame) == FrameUse::kFit;
+      options.track_weight = fitted ? 1 : 0;
+      options.chamfer_weight = fitted || !episode.recording->surface.empty() ? 1 : 0;
+      loss += AddFrameLoss(particles[frame], *episode.recording, frame, options, &bars[e][frame]);
     }
   }
   return LiftedLoss{loss, motion.Adjoint(

@@ -13,8 +13,8 @@ struct LiftedLoss {
   SystemGradient gradient;  // of it
 };
 
-// The training loss (loss.h) of the lifted particles in all frames of all episodes but the first
-// ones, and its derivatives with respect to the level's system. Nothing where the motion diverges.
+// The training loss (loss.h) of the lifted particles in the fitted frames of all episodes, and its
+// derivatives with respect to the level's system. Nothing where the motion diverges.
 std::optional<LiftedLoss> ComputeLiftedLoss(const LiftedMotion& motion,
                                             const SpringMassSystem& system);
 

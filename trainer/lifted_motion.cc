@@ -87,7 +87,7 @@ std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMass
   RolloutOptions options = options_.rollout;
   options.substeps = substeps[e];
   const Recording* recording = carried_.empty() ? episode.recording : &carried_[e];
-  motion.rollout = RollOut(system, {recording, episode.frames}, options);
+  motion.rollout = RollOut(system, {recording, episode.frames, episode.use}, options);
   if (motion.rollout->diverged()) return {};
   if (lifts_.empty()) return motion;
   motion.lifted.resize(episode.frames);
@@ -139,27 +139,6 @@ SystemGradient LiftedMotion::Adjoint(const SpringMassSystem& system,
 std::vector<Points> LiftedMotion::ZerosLike(std::vector<Points> frames) {
   for (Points& frame : frames) frame.setZero();
   return frames;
-}
-
-std::optional<double> MeanTrackError(const std::vector<Points>& particles,
-                                     const Recording& recording, int first, int last) {
-  double sum = 0;
-  int frames = 0;
-  for (int frame = first; frame < last; ++frame) {
-    const Points& measured = recording.points[frame];
-    double distance = 0;
-    int seen = 0;
-    for (int i = 0; i < measured.cols(); ++i) {
-      if (std::isnan(measured(0, i))) continue;
-      distance += (particles[frame].col(i) - measured.col(i)).norm();
-      ++seen;
-    }
-    if (seen == 0) continue;
-    sum += distance / seen;
-    ++frames;
-  }
-  if (frames == 0) return {};
-  return sum / frames;
 }
 
 }  // namespace physpring

@@ -84,11 +84,6 @@ class LiftedMotion {
   std::vector<Lift> lifts_;
 };
 
-// Track error of frames first .. last - 1 of an episode: the mean over frames of the mean distance
-// of particles from seen points, m. Nothing if nothing is seen.
-std::optional<double> MeanTrackError(const std::vector<Points>& particles,
-                                     const Recording& recording, int first, int last);
-
 }  // namespace physpring
 
 #endif  // PHYSPRING_TRAINER_LIFTED_MOTION_H_

@@ -17,7 +17,8 @@ template <class Real>
 class RolloutIn : public Rollout {
  public:
   RolloutIn(const SpringMassSystem& system, const Episode& episode, const RolloutOptions& options)
-      : recording_(*episode.recording),
+      : episode_(episode),
+        recording_(*episode.recording),
         observer_gain_(options.observer_gain),
         growth_limit_(options.growth_limit),
         recording_ahead_(options.threads > 1 ? std::launch::async : std::launch::deferred),
@@ -40,7 +41,7 @@ class RolloutIn : public Rollout {
         diverged_ = true;
         break;
       }
-      Observe(observer_gain_, recording_, frame, position, &state);
+      if (IsObserved(frame)) Observe(observer_gain_, recording_, frame, position, &state);
       positions_.push_back(std::move(position));
       states_.push_back(std::move(state));
     }
@@ -53,7 +54,8 @@ class RolloutIn : public Rollout {
     double injected_squared = 0;
     std::future<void> recorded = Record(states_.size() - 1);
     for (std::size_t frame = states_.size() - 1; frame >= 1; --frame) {
-      ObserveAdjoint(observer_gain_, recording_, static_cast<int>(frame), &state_bar);
+      const int at = static_cast<int>(frame);
+      if (IsObserved(at)) ObserveAdjoint(observer_gain_, recording_, at, &state_bar);
       injected_squared += position_bar[frame].squaredNorm();
       const double norm = Add(position_bar[frame], &state_bar);
       if (norm > growth_limit_ * std::sqrt(injected_squared)) {
@@ -79,6 +81,8 @@ class RolloutIn : public Rollout {
     });
   }
 
+  bool IsObserved(int frame) const { return episode_.UseOf(frame) != FrameUse::kNone; }
+
   FrameInput Input(int frame) const { return RecordedInput(recording_, frame, delay_); }
 
   static void Kick(const Points& kick, NodeStates<Real>* state) {
@@ -100,6 +104,7 @@ class RolloutIn : public Rollout {
     return std::sqrt(norm_squared);
   }
 
+  Episode episode_;
   const Recording& recording_;
   double observer_gain_;
   double growth_limit_;

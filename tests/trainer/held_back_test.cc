@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 
 namespace physpring {
@@ -27,26 +26,29 @@ int RunOf(const FitData& data, const Recording& recording) {
   return data.continuous_recording[static_cast<std::size_t>(recording.points[0](0, 0))];
 }
 
-// Fit frames that are seen.
-std::set<int> Seen(const Recording& recording) {
-  std::set<int> seen;
-  for (int frame = 1; frame < recording.train_frames; ++frame) {
-    if (!std::isnan(recording.points[frame](0, 0))) seen.insert(frame);
+// Frames of that use.
+std::set<int> Frames(const SplitRecording& split, FrameUse use) {
+  std::set<int> frames;
+  for (std::size_t frame = 0; frame < split.use.size(); ++frame) {
+    if (split.use[frame] == use) frames.insert(static_cast<int>(frame));
   }
-  return seen;
+  return frames;
 }
+std::set<int> Fit(const SplitRecording& split) { return Frames(split, FrameUse::kFit); }
+std::set<int> Held(const SplitRecording& split) { return Frames(split, FrameUse::kHeld); }
 
 TEST(HoldBack, HoldsBackWholeRunsWhereThereAreFour) {
   const FitData data = OfRuns({0, 0, 1, 2, 2, 3, 4, 5, 6, 7, 7});
   const HeldBack split = HoldBack(data, 100);
   std::set<int> fit, judged;
-  for (const Recording& recording : split.fit) {
-    fit.insert(RunOf(data, recording));
-    EXPECT_EQ(Seen(recording).size(), recording.train_frames - 1u);
+  for (const SplitRecording& one : split.fit) {
+    fit.insert(RunOf(data, *one.recording));
+    EXPECT_EQ(Fit(one).size(), one.recording->train_frames - 1u);
+    EXPECT_TRUE(Held(one).empty());
   }
-  for (const HeldBack::Judged& by : split.judged) {
-    judged.insert(RunOf(data, *by.whole));
-    EXPECT_EQ(Seen(by.held_back), Seen(*by.whole));
+  for (const SplitRecording& one : split.judged) {
+    judged.insert(RunOf(data, *one.recording));
+    EXPECT_EQ(Held(one).size(), one.recording->train_frames - 1u);
   }
   EXPECT_EQ(judged.size(), 2u);  // a quarter of 8
   EXPECT_EQ(fit.size(), 6u);
@@ -67,16 +69,17 @@ TEST(HoldBack, HoldsBackTwoEighthsOfFewerRuns) {
   ASSERT_EQ(split.fit.size(), data.recordings.size());
   ASSERT_EQ(split.judged.size(), data.recordings.size());
   for (std::size_t i = 0; i < split.fit.size(); ++i) {
-    const std::set<int> fit = Seen(split.fit[i]), held = Seen(split.judged[i].held_back);
+    const std::set<int> fit = Fit(split.fit[i]), held = Held(split.judged[i]);
     const int last = data.recordings[i].train_frames - 1;
-    EXPECT_EQ(split.judged[i].whole, &data.recordings[i]);
+    EXPECT_EQ(split.judged[i].recording, &data.recordings[i]);
     EXPECT_EQ(fit.size() + held.size(), static_cast<std::size_t>(last));
     for (int frame : held) EXPECT_FALSE(fit.contains(frame)) << frame;
     EXPECT_NEAR(static_cast<double>(held.size()), 0.25 * last, 2);
     EXPECT_TRUE(held.contains(last));  // the end, and frames in the middle:
     EXPECT_LT(*held.begin(), 0.55 * last);
     EXPECT_GT(*fit.rbegin(), 0.8 * last);
-    EXPECT_FALSE(std::isnan(split.fit[i].points[0](0, 0)));
+    EXPECT_EQ(Fit(split.judged[i]), fit);     // an observer sees everything there, ...
+    EXPECT_TRUE(Held(split.fit[i]).empty());  // ... and here what is fitted
   }
 }
 
@@ -85,10 +88,11 @@ TEST(HoldBack, LeavesSomethingOnBothSidesOfShortRecordings) {
     FitData data = OfRuns({0});
     data.recordings[0].train_frames = frames;
     const HeldBack split = HoldBack(data, 100);
-    EXPECT_FALSE(Seen(split.fit[0]).empty()) << frames;
-    EXPECT_FALSE(Seen(split.judged[0].held_back).empty()) << frames;
+    EXPECT_FALSE(Fit(split.fit[0]).empty()) << frames;
+    EXPECT_FALSE(Held(split.judged[0]).empty()) << frames;
     ASSERT_EQ(split.FitEpisodes().size(), 1u);
-    EXPECT_EQ(split.FitEpisodes()[0].recording, split.fit.data());
+    EXPECT_EQ(split.FitEpisodes()[0].recording, &data.recordings[0]);
+    EXPECT_EQ(split.FitEpisodes()[0].use, &split.fit[0].use);
     EXPECT_EQ(split.FitEpisodes()[0].frames, frames);
   }
 }
@@ -98,7 +102,7 @@ TEST(HoldBack, TakesAtMostAsManyRecordingsAsAsked) {
   const HeldBack split = HoldBack(data, 2);
   ASSERT_EQ(split.fit.size(), 2u);
   EXPECT_EQ(split.judged.size(), 2u);
-  EXPECT_NE(RunOf(data, split.fit[0]), RunOf(data, split.fit[1]));
+  EXPECT_NE(RunOf(data, *split.fit[0].recording), RunOf(data, *split.fit[1].recording));
 }
 
 TEST(FitEpisodes, AreAllFitFramesOfRecordingsSpreadEvenly) {

@@ -93,11 +93,9 @@ EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
                              std::vector<SplitRecording> recordings, int threads, Journal* journal)
     : bodies_(std::move(bodies)),
       recordings_(std::move(recordings)),
-      followed_(recordings_),
       threads_(threads),
       journal_(journal) {
-  for (const SplitRecording& split : recordings_) seen_.push_back(OnlyFitFrames(split));
-  for (std::size_t i = 0; i < seen_.size(); ++i) followed_[i].recording = &seen_[i];
+  for (const SplitRecording& split : recordings_) followed_.push_back(DropHeldOut(split));
 }
 
 double EffectFitting::difference() const { return FactorDifference(*recordings_[0].recording); }

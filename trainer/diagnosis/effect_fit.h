@@ -86,8 +86,7 @@ class EffectFitting {
 
   std::vector<DiagnosisBody> bodies_;
   std::vector<SplitRecording> recordings_;
-  std::vector<Recording> seen_;           // with the fit frames only ...
-  std::vector<SplitRecording> followed_;  // ... and their splits
+  std::vector<SplitRecording> followed_;  // the same with the fit frames only
   int threads_;
   Journal* journal_;
   std::unique_ptr<Journal> own_journal_ = std::make_unique<Journal>();

@@ -50,7 +50,7 @@ std::vector<Episode> EpisodesOf(const std::vector<SplitRecording>& recordings, b
   for (const SplitRecording& split : recordings) {
     const int fit = split.last(Use::kFit);
     const int frames = fit_only ? fit : std::max(fit, split.last(Use::kHeld));
-    episodes.push_back({split.recording, frames, &split.use});
+    episodes.push_back(split.First(frames));
   }
   return episodes;
 }
@@ -86,27 +86,12 @@ std::optional<std::vector<std::vector<Points>>> EffectProblem::Predict(
 
 FrameTrack TrackOf(const std::vector<SplitRecording>& recordings,
                    const std::vector<std::vector<Points>>& predicted, Use use) {
-  FrameTrack track;
+  FrameTrack all;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    std::vector<double> sum(recordings[i].use.size(), 0), seen(sum);
-    ForEachSeen(recordings[i].All(), use, [&](int frame, int point) {
-      sum[frame] +=
-          (predicted[i][frame].col(point) - recordings[i].recording->points[frame].col(point))
-              .norm();
-      seen[frame] += 1;
-    });
-    for (std::size_t frame = 0; frame < sum.size(); ++frame) {
-      if (seen[frame] > 0) track.push_back(sum[frame] / seen[frame]);
-    }
+    const FrameTrack track = TrackOf(recordings[i].All(), use, predicted[i]);
+    all.insert(all.end(), track.begin(), track.end());
   }
-  return track;
-}
-
-double Mean(const FrameTrack& track) {
-  double sum = 0;
-  for (double error : track) sum += error;
-  return track.empty() ? std::numeric_limits<double>::quiet_NaN()
-                       : sum / static_cast<double>(track.size());
+  return all;
 }
 
 }  // namespace physpring

@@ -10,12 +10,9 @@
 #include "trainer/diagnosis/effect_model.h"
 #include "trainer/diagnosis/split_recording.h"
 #include "trainer/motion_problem.h"
+#include "trainer/track_error.h"
 
 namespace physpring {
-
-// Mean distance of predicted from measured points of each frame of one use, in order; frames in
-// which nothing was seen are left out.
-using FrameTrack = std::vector<double>;
 
 // Sub-steps a second of a diagnosis, at least: what a soft body predicts must not hang on the step,
 // or an effect is taken for a remedy because it makes the body stiffer and so the step finer.
@@ -33,7 +30,6 @@ class EffectProblem : public MotionProblem {
     bool limit_dashpots = false;
   };
 
-  // An observer corrects towards all that the recordings see, whatever its use.
   EffectProblem(const EffectModel& model, const std::vector<SplitRecording>& recordings,
                 const Options& options);
 
@@ -48,10 +44,9 @@ class EffectProblem : public MotionProblem {
   LiftedMotion all_;  // up to the last frame in use
 };
 
-// Track errors of predicted positions.
+// Track errors of predicted positions, one recording after the other.
 FrameTrack TrackOf(const std::vector<SplitRecording>& recordings,
                    const std::vector<std::vector<Points>>& predicted, SplitRecording::Use use);
-double Mean(const FrameTrack& track);
 
 }  // namespace physpring
 

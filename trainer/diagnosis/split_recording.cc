@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ranges>
 
 namespace physpring {
@@ -52,25 +51,6 @@ std::size_t FirstAtRest(const std::vector<double>& squares, double noise) {
 
 }  // namespace
 
-int SplitRecording::last(Use wanted) const {
-  const auto found = std::find(use.rbegin(), use.rend(), wanted);
-  return static_cast<int>(use.rend() - found);
-}
-
-int SplitRecording::seen(Use wanted) const {
-  int count = 0;
-  for (std::size_t frame = 0; frame < use.size(); ++frame) {
-    count += use[frame] == wanted && !recording->points[frame].array().isNaN().all() ? 1 : 0;
-  }
-  return count;
-}
-
-SplitRecording UseAll(const Recording& recording, Use use) {
-  SplitRecording split{&recording, std::vector<Use>(recording.points.size(), use)};
-  split.use[0] = Use::kNone;
-  return split;
-}
-
 SplitRecording HoldOutFrames(const Recording& recording) {
   SplitRecording split = UseAll(recording, Use::kFit);
   // of a short recording still one block of the four
@@ -111,13 +91,9 @@ SplitRecording FitHeldOut(SplitRecording split) {
   return split;
 }
 
-Recording OnlyFitFrames(const SplitRecording& split) {
-  Recording part = *split.recording;
-  for (std::size_t frame = 1; frame < split.use.size(); ++frame) {
-    if (split.use[frame] == Use::kFit) continue;
-    part.points[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
-  return part;
+SplitRecording DropHeldOut(SplitRecording split) {
+  std::replace(split.use.begin(), split.use.end(), Use::kHeld, Use::kNone);
+  return split;
 }
 
 }  // namespace physpring

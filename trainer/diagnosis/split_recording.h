@@ -3,26 +3,9 @@
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
 
-#include <vector>
-
 #include "trainer/episode.h"
 
 namespace physpring {
-
-// A recording with the use of each of its frames. Frame 0 has none: it is the start.
-struct SplitRecording {
-  using Use = FrameUse;
-  const Recording* recording;
-  std::vector<Use> use;
-
-  Episode All() const { return {recording, static_cast<int>(use.size()), &use}; }
-
-  int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
-  int seen(Use wanted) const;  // frames of that use in which a point is seen
-};
-
-// All frames for one use.
-SplitRecording UseAll(const Recording& recording, SplitRecording::Use use);
 
 // The future of a recording (from train_frames on) held out, or every fourth block where it has
 // none, of 0.3 s or a quarter of the recording; the rest to fit.
@@ -37,8 +20,8 @@ int LeaveOutRest(double noise, SplitRecording* split);
 // The frames that are held out to fit, too.
 SplitRecording FitHeldOut(SplitRecording split);
 
-// A copy of the recording in which, after frame 0, only frames to fit are seen.
-Recording OnlyFitFrames(const SplitRecording& split);
+// Those of no use.
+SplitRecording DropHeldOut(SplitRecording split);
 
 }  // namespace physpring
 

@@ -31,7 +31,7 @@ std::optional<EffectFit> TrainAnew(const EffectFitting& fitting, const WorkShare
   for (const SplitRecording& split : fitting.recordings()) {
     if (split.last(SplitRecording::Use::kFit) == 0) continue;
     data.continuous_recording.push_back(static_cast<int>(data.recordings.size()));
-    data.recordings.push_back(OnlyFitFrames(split));
+    data.recordings.push_back(OnlyFitFrames(split.All()));
   }
   TrainOptions options;
   options.effects = like.system.effects;

@@ -12,6 +12,7 @@
 #include "trainer/lifted_motion.h"
 #include "trainer/network/level_network.h"
 #include "trainer/parallel.h"
+#include "trainer/track_error.h"
 
 namespace physpring {
 namespace {
@@ -56,9 +57,7 @@ double TopologyFit::PredictionError(const Assignment& assignment) const {
   if (!moved) return kDiverged;
   double sum = 0;
   for (int e = 0; e < level.episode_count(); ++e) {
-    sum += MeanTrackError((*moved)[e].particles(), *level.episode(e).recording, 1,
-                          level.episode(e).frames)
-               .value_or(0);
+    sum += MeanTrackError(level.episode(e), FrameUse::kFit, (*moved)[e].particles());
   }
   return sum / level.episode_count();
 }

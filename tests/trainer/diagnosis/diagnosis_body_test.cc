@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "trainer/bodies/bending_chain.h"
+
 namespace physpring {
 namespace {
 

@@ -98,7 +98,7 @@ TEST(SplitRecording, HalfOfWhatIsHeldOutStays) {
 TEST(SplitRecording, OnlyFitFramesAreSeenInACopy) {
   const Recording recording = Frames(25, 25);
   const SplitRecording split = HoldOutFrames(recording);
-  const Recording copy = OnlyFitFrames(split);
+  const Recording copy = OnlyFitFrames(split.All());
   EXPECT_EQ(copy.points[0], recording.points[0]);
   for (std::size_t frame = 1; frame < 25; ++frame) {
     EXPECT_EQ(copy.points[frame].hasNaN(), split.use[frame] != Use::kFit) << frame;
