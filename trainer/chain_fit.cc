@@ -21,7 +21,7 @@ std::string Status(const ChosenBody& model, double error) {
   return fmt::format("{}, free motions: {:.3f} mm", model.body.Label(), 1e3 * error);
 }
 
-struct Descent {
+struct ChainDescent {
   FreeMotionDescent state;
   int iteration = 0;
 
@@ -50,17 +50,17 @@ ChosenBody FitChain(const ChosenBody& chosen, const FitData& data, const TrainOp
           });
   model.factors = search.BestFactors();
 
-  const Descent descent = work.Part("descent of free motions", kSearchDone, 1)
-                              .Follow(Descent{{model.factors, search.best_error(), false}},
-                                      [&](Descent* one) -> StepReport {
-                                        one->state =
-                                            DescendFreeMotions(model, factors.AlongBodyEntries(),
-                                                               free, options, one->state);
-                                        ++one->iteration;
-                                        return {one->iteration >= kDescents || one->state.converged,
-                                                static_cast<double>(one->iteration) / kDescents,
-                                                Status(model, one->state.error)};
-                                      });
+  const ChainDescent descent =
+      work.Part("descent of free motions", kSearchDone, 1)
+          .Follow(ChainDescent{{model.factors, search.best_error(), false}},
+                  [&](ChainDescent* one) -> StepReport {
+                    one->state = DescendFreeMotions(model, factors.AlongBodyEntries(), free,
+                                                    options, one->state);
+                    ++one->iteration;
+                    return {one->iteration >= kDescents || one->state.converged,
+                            static_cast<double>(one->iteration) / kDescents,
+                            Status(model, one->state.error)};
+                  });
   model.factors = descent.state.factors;
   return model;
 }

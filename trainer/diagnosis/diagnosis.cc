@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "trainer/diagnosis/effect_loop.h"
 #include "trainer/diagnosis/effect_problem.h"
+#include "trainer/diagnosis/find_effects.h"
 #include "trainer/diagnosis/fit_residual.h"
 #include "trainer/diagnosis/last_fit.h"
 #include "trainer/diagnosis/noise_floor.h"
@@ -109,27 +109,28 @@ std::ptrdiff_t EffectValueCount(const std::vector<EffectValues>& effects) {
   return count;
 }
 
-// The fit's effects behind those that were known.
-std::vector<EffectValues> NewEffects(const EffectFit& fit, const std::vector<EffectValues>& known) {
-  const std::vector<EffectValues>& all = fit.system.effects;
+// The verdict's effects behind those that were known.
+std::vector<EffectValues> NewEffects(const Verdict& verdict,
+                                     const std::vector<EffectValues>& known) {
+  const std::vector<EffectValues>& all = verdict.system.effects;
   return {all.begin() + static_cast<long>(known.size()), all.end()};
 }
 
-// The twin with the fit's system at level 0, and its effects at all levels: behind those that
+// The twin with the verdict's system at level 0, and its effects at all levels: behind those that
 // belong to the body, `own` of them.
-Twin TwinWith(Twin twin, const EffectFit& fit, std::size_t own,
+Twin TwinWith(Twin twin, const Verdict& verdict, std::size_t own,
               const std::vector<SplitRecording>& splits) {
   twin.training_state.clear();
-  const auto first = fit.system.effects.begin() + static_cast<long>(own);
+  const auto first = verdict.system.effects.begin() + static_cast<long>(own);
   for (TwinLevel& level : twin.levels) {
     std::vector<EffectValues>& effects = level.system.effects;
     effects.resize(std::min(own, effects.size()));
-    effects.insert(effects.end(), first, fit.system.effects.end());
+    effects.insert(effects.end(), first, verdict.system.effects.end());
   }
   TwinLevel& dense = twin.levels[0];
-  dense.system = fit.system;
+  dense.system = verdict.system;
   dense.substeps_per_second = DiagnosisRate(dense.system, twin.fps);
-  twin.controller_velocity = fit.controller_velocity;
+  twin.controller_velocity = verdict.controller_velocity;
   for (const SplitRecording& split : splits) {
     const Recording& recording = *split.recording;
     const int fitted = split.last(Use::kFit);
@@ -144,10 +145,9 @@ Twin TwinWith(Twin twin, const EffectFit& fit, std::size_t own,
   return twin;
 }
 
-}  // namespace
-
-Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
-                   const std::vector<Recording>& held_out, const DiagnosisOptions& options) {
+// Whom it is about; throws if a recording is of another object.
+Diagnosis Introduce(const Twin& twin, const std::vector<Recording>& recordings,
+                    const std::vector<Recording>& held_out) {
   Diagnosis result;
   for (const Recording& recording : recordings) {
     ExpectSameObject(twin, recording);
@@ -158,60 +158,79 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
     ExpectSameObject(twin, recording);
     result.judged.push_back(recording.name);
   }
+  return result;
+}
+
+// What the findings say of held-out frames, and the effects with their certainty.
+void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
+          const std::vector<EffectValues>& known, Diagnosis* result) {
+  const Verdict &before = findings.before, &accepted = findings.accepted;
+  result->before = before.track;
+  result->before_track = before.held;
+  result->rankings = findings.rankings;
+  result->after = accepted.track;
+  result->after_track = accepted.held;
+  result->gain = GainOf(fitting, seed, before.held, accepted.held);
+  result->effects = NewEffects(accepted, known);
+  if (result->effects.empty()) return;
+  result->certainty = CertaintyOf(fitting, findings.common.descent);
+  result->certainty.erase(result->certainty.begin(),
+                          result->certainty.end() - EffectValueCount(result->effects));
+}
+
+// The forces that are missing without and with the effects, and what they say of what is left.
+void TellResidual(const Fitting& fitting, const Findings& findings, double noise,
+                  Diagnosis* result) {
+  std::vector<const Verdict*> verdicts{&findings.before};
+  if (!result->effects.empty()) verdicts.push_back(&findings.accepted);
+  const auto residuals = ResidualsOf(fitting, verdicts, noise, kResidualShare);
+  result->residual_before = residuals.front();
+  result->residual_after = residuals.back();
+  const double error = findings.accepted.track.held;
+  if (error > kUnexplained * result->noise_floor) {
+    result->unexplained = FindUnexplained(result->residual_after, error - result->noise_floor,
+                                          fitting.recordings()[0].recording->fps);
+  }
+}
+
+}  // namespace
+
+Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
+                   const std::vector<Recording>& held_out, const DiagnosisOptions& options) {
+  Diagnosis result = Introduce(twin, recordings, held_out);
   std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
   ExpectSplit(splits);
   const double noise = NoiseOf(splits);
   for (SplitRecording& split : splits) result.resting_frames += LeaveOutRest(noise, &split);
   result.noise_floor = TrackNoiseFloor(noise);
   result.motionless = MotionlessTrack(splits);
-  const EffectFitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits,
-                              options.threads, options.journal);
-  EffectLoop loop(fitting, result.noise_floor, options, kLoopShare);
-  // those of the body itself, if it has any, or of the twin so far
+  const Fitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads,
+                        options.journal);
+  // effects of the body itself, if it has any, or of the twin so far
   const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
-  if (!loop.FitCommon(own.empty() ? known : std::vector<EffectValues>())) {
+  std::optional<Verdict> trained;  // whose training took more care than a refit of springs does
+  if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
+    trained = JudgeTwin(twin, splits);
+  }
+  const auto findings = FindEffects(fitting, result.noise_floor, options, kLoopShare,
+                                    own.empty() ? known : std::vector<EffectValues>(), trained);
+  if (!findings) {
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",
                             recordings[0].name, twin.name));
   }
-  // its training took more care than a refit of springs does
-  if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
-    if (const auto trained = AsTrained(twin, splits, loop.accepted())) loop.Offer(*trained);
-  }
-  for (int round = 0; round < options.most_effects && loop.Round(round); ++round) {
-  }
-  const EffectFit& accepted = loop.accepted();
-  result.before = loop.before().track;
-  result.before_track = loop.before().held;
-  result.rankings = loop.rankings();
-  result.after = accepted.track;
-  result.after_track = accepted.held;
-  result.gain = loop.Gain(result.before_track, result.after_track);
-  result.effects = NewEffects(accepted, known);
-  if (!result.effects.empty()) {
-    result.certainty = CertaintyOf(fitting, loop.common());
-    result.certainty.erase(result.certainty.begin(),
-                           result.certainty.end() - EffectValueCount(result.effects));
-  }
-  std::vector<const EffectFit*> fits{&loop.before()};
-  if (!result.effects.empty()) fits.push_back(&accepted);
-  const auto residuals = ResidualsOf(fitting, fits, noise, kResidualShare);
-  result.residual_before = residuals.front();
-  result.residual_after = residuals.back();
-  if (accepted.track.held > kUnexplained * result.noise_floor) {
-    result.unexplained = FindUnexplained(
-        result.residual_after, accepted.track.held - result.noise_floor, recordings[0].fps);
-  }
-  std::optional<EffectFit> last;
+  Tell(fitting, *findings, options.seed, known, &result);
+  TellResidual(fitting, *findings, noise, &result);
+  std::optional<Verdict> last;
   if (held_out.empty() && !result.effects.empty()) {
-    last = FitAllFrames(fitting, kLastShare, accepted);
+    last = FitAllFrames(fitting, kLastShare, findings->accepted);
   }
   if (last) {
     result.all_frames = last->track.fit;
     result.effects = NewEffects(*last, known);
     for (SplitRecording& split : splits) split = FitHeldOut(split);
   }
-  result.twin = TwinWith(twin, last ? *last : accepted, own.size(), splits);
+  result.twin = TwinWith(twin, last ? *last : findings->accepted, own.size(), splits);
   return result;
 }
 

@@ -24,19 +24,17 @@
 #include <string>
 #include <vector>
 
+#include "trainer/diagnosis/acceptance.h"
 #include "trainer/diagnosis/block_bootstrap.h"
 #include "trainer/diagnosis/effect_certainty.h"
-#include "trainer/diagnosis/effect_fit.h"
-#include "trainer/journal/journal.h"
+#include "trainer/diagnosis/fitting.h"
 #include "trainer/diagnosis/residual_pattern.h"
 #include "trainer/diagnosis/unexplained.h"
+#include "trainer/journal/journal.h"
 #include "twin/recording.h"
 #include "twin/twin.h"
 
 namespace physpring {
-
-// Held-out errors below this, times the noise floor, say that nothing is missing.
-inline constexpr double kExplained = 1.25;
 
 struct DiagnosisOptions {
   int threads = 1;

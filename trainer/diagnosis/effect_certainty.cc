@@ -36,8 +36,27 @@ Eigen::MatrixXd GradientScatter(const Eigen::MatrixXd& jacobian, const Eigen::Ve
 
 }  // namespace
 
-std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const EffectFit& fit) {
-  EffectProblem problem = fitting.Problem(fit, 0);
+std::vector<ValueCertainty> CertaintyFrom(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& r,
+                                          int first) {
+  const Eigen::Index size = jacobian.cols();
+  const double variance = std::max(1e-300, r.squaredNorm() / static_cast<double>(r.size()));
+  Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
+  normal.diagonal().array() += kDiagnosisPrecision;
+  const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  Eigen::MatrixXd scatter = GradientScatter(jacobian, r) / (variance * variance);
+  scatter.diagonal().array() += kDiagnosisPrecision;
+  const Eigen::MatrixXd robust = covariance * scatter * covariance;
+  std::vector<ValueCertainty> certainty;
+  for (Eigen::Index i = first; i < size; ++i) {
+    certainty.push_back({std::sqrt(std::max({0.0, covariance(i, i), robust(i, i)})),
+                         std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0),
+                         std::clamp(kDiagnosisPrecision * covariance(i, i), 0.0, 1.0)});
+  }
+  return certainty;
+}
+
+std::vector<ValueCertainty> CertaintyOf(const Fitting& fitting, const Descent& fit) {
+  EffectProblem problem = fitting.Problem(fit.hypothesis, 0);
   if (!problem.FixSubsteps(fit.x)) return {};
   const auto r = problem.Residuals(fit.x);
   if (!r || r->size() == 0) return {};
@@ -50,28 +69,17 @@ std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const Effe
       jacobian.col(i) = (*at - *r) / fitting.difference();
     }
   });
-  const double variance = std::max(1e-300, r->squaredNorm() / static_cast<double>(r->size()));
-  Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
-  normal.diagonal().array() += kDiagnosisPrecision;
-  const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-  Eigen::MatrixXd scatter = GradientScatter(jacobian, *r) / (variance * variance);
-  scatter.diagonal().array() += kDiagnosisPrecision;
-  const Eigen::MatrixXd robust = covariance * scatter * covariance;
-
-  const int count = problem.model().effect_size();
+  const int count = problem.model().effect_size(), own = size - count;
   const Eigen::VectorXd values = LastValuesOf(problem.model().Apply(fit.x), count);
-  std::vector<ValueCertainty> certainty;
-  const int own = size - count;
-  for (int i = own; i < size; ++i) {
+  std::vector<ValueCertainty> certainty = CertaintyFrom(jacobian, *r, own);
+  for (int i = 0; i < count; ++i) {
     // how far the value moves with its entry of x
     Eigen::VectorXd moved = fit.x;
-    moved[i] += fitting.difference();
+    moved[own + i] += fitting.difference();
     const double slope =
-        std::abs(LastValuesOf(problem.model().Apply(moved), count)[i - own] - values[i - own]) /
+        std::abs(LastValuesOf(problem.model().Apply(moved), count)[i] - values[i]) /
         fitting.difference();
-    certainty.push_back({slope * std::sqrt(std::max({0.0, covariance(i, i), robust(i, i)})),
-                         std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0),
-                         std::clamp(kDiagnosisPrecision * covariance(i, i), 0.0, 1.0)});
+    certainty[static_cast<std::size_t>(i)].error *= slope;
   }
   return certainty;
 }

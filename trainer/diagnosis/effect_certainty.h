@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/fitting.h"
 
 namespace physpring {
 
@@ -26,9 +26,14 @@ struct ValueCertainty {
   double unknown = 0;
 };
 
-// Of the effects' values, one effect after the other, at a fit's common factors; empty if it cannot
-// be evaluated.
-std::vector<ValueCertainty> CertaintyOf(const EffectFitting& fitting, const EffectFit& fit);
+// Of the entries of x from `first` on, from the Jacobian and the residuals left, in the entries'
+// units.
+std::vector<ValueCertainty> CertaintyFrom(const Eigen::MatrixXd& jacobian,
+                                          const Eigen::VectorXd& residuals, int first);
+
+// Of the effects' values, one effect after the other, at a descent's common factors; empty if it
+// cannot be evaluated.
+std::vector<ValueCertainty> CertaintyOf(const Fitting& fitting, const Descent& fit);
 
 }  // namespace physpring
 

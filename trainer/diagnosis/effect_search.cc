@@ -8,19 +8,15 @@
 #include <map>
 #include <span>
 
-#include "trainer/diagnosis/block_bootstrap.h"
+#include "trainer/diagnosis/acceptance.h"
 
 namespace physpring {
 namespace {
 
-constexpr std::size_t kTracedEffects = 6;  // on fitted bodies that are refitted at most ...
-constexpr double kLeastScore = 0.05;       // ... if the trace gives them such a part of the best
+constexpr std::size_t kTracedEffects = 6;  // on fitted bodies that are refitted at most
 constexpr std::size_t kEarlyBodies = 2;    // that effects are tried on from the start on
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-constexpr int kSimplestDraws = 1000;
 constexpr double kEarlyShare = 0.4, kTraceShare = 0.5;  // of the work of a search, until then
-// of the misfit that the body alone has after as many steps, what a strong law leaves
-constexpr double kStrong = 0.7;
 constexpr std::size_t kMostStrong = 4;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
@@ -42,39 +38,27 @@ constexpr std::array<Cut, 3> kCuts = {{{0.1, 2, 10, 2}, {0.05, 3, 6, 2}, {0, 12,
 constexpr std::array<Cut, 4> kAgainCuts = {
     {{0.2, 4, 1, 1}, {0.1, 4, 1, 1}, {0.05, 4, 1, 1}, {0, 12, 1, 1}}};
 
-// Under an observer, a misfit so many times the least one is hopeless.
-constexpr double kHopeless = 4;
-constexpr Eigen::Index kFreeForm = 20;  // parameters
-
-std::string NewEffect(const EffectFit& fit) {
-  return fit.start.empty() ? "" : fit.start.back().name;
-}
-
-Eigen::Index ParameterCount(const EffectFit& fit) {
-  Eigen::Index count = 0;
-  for (const EffectValues& effect : fit.start) count += effect.values.size();
-  return count;
-}
+bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
 
 // The best by misfit, and, beside others, the best free-form one.
-void Keep(std::size_t count, std::size_t of_an_effect, std::vector<EffectFit>* fits) {
+void Keep(std::size_t count, std::size_t of_an_effect, std::vector<Descent>* fits) {
   std::stable_sort(fits->begin(), fits->end(),
-                   [](const EffectFit& p, const EffectFit& q) { return p.misfit < q.misfit; });
-  const auto best = std::find_if_not(fits->begin(), fits->end(), IsFreeForm);
+                   [](const Descent& p, const Descent& q) { return p.misfit < q.misfit; });
+  const auto best = std::find_if_not(fits->begin(), fits->end(), HasFreeForm);
   const bool competing = best != fits->end();  // else all have the same effect, maybe a known one
   const double least = competing ? best->misfit : fits->empty() ? 0 : fits->front().misfit;
   std::map<std::string, std::size_t> kept;
   std::size_t others = 0;
-  std::erase_if(*fits, [&](const EffectFit& fit) {
-    const bool apart = competing && IsFreeForm(fit);
-    if (kept[NewEffect(fit)]++ >= (apart ? 1 : of_an_effect)) return true;
-    return !apart && (others++ >= count || fit.misfit > kHopeless * least);
+  std::erase_if(*fits, [&](const Descent& fit) {
+    const bool apart = competing && HasFreeForm(fit);
+    if (kept[fit.hypothesis.NewEffect()]++ >= (apart ? 1 : of_an_effect)) return true;
+    return !apart && (others++ >= count || IsHopeless(fit.misfit, least));
   });
 }
 
 // Successive halving; the best fit by misfit is the first one after it.
-void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const WorkShare& stage,
-           const std::string& of, std::vector<EffectFit>* fits) {
+void Halve(const Fitting& fitting, std::span<const Cut> cuts, const WorkShare& stage,
+           const std::string& of, std::vector<Descent>* fits) {
   if (fits->empty()) return;
   double done = 0, all = 0;  // steps, if each cut keeps as many as it may
   std::size_t count = fits->size();
@@ -88,7 +72,7 @@ void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const WorkSh
         stage.Part(done / all, std::min(1.0, (done + steps) / all)), steps,
         fmt::format("refitting {} models{}, gain {}", fits->size(), of, cut.gain));
     done += steps;
-    for (EffectFit& fit : *fits) {
+    for (Descent& fit : *fits) {
       fit.damping = 1e-2;
       fit.converged = false;
     }
@@ -97,44 +81,46 @@ void Halve(const EffectFitting& fitting, std::span<const Cut> cuts, const WorkSh
   }
 }
 
-void JudgeAndSort(const EffectFitting& fitting, std::vector<EffectFit>* fits) {
-  fitting.JudgeAll(fits);
-  std::stable_sort(fits->begin(), fits->end(), [](const EffectFit& p, const EffectFit& q) {
-    return p.track.held < q.track.held;
-  });
+std::vector<Verdict> JudgeAndSort(const Fitting& fitting, const std::vector<Descent>& fits) {
+  std::vector<Verdict> verdicts = fitting.JudgeAll(fits);
+  std::stable_sort(verdicts.begin(), verdicts.end(),
+                   [](const Verdict& p, const Verdict& q) { return p.track.held < q.track.held; });
+  return verdicts;
 }
 
 // The fit with one more effect, from where the fit is.
-EffectFit With(const EffectFit& fit, const EffectTrace& trace) {
-  EffectFit with = fit;
-  with.start.push_back({trace.effect->name(), trace.start});
+Descent With(const Descent& fit, const EffectTrace& trace) {
+  Descent with = fit;
+  with.hypothesis.effects.push_back({trace.effect->name(), trace.start});
   with.x.conservativeResizeLike(Eigen::VectorXd::Zero(fit.x.size() + trace.start.size()));
   return with;
 }
 
 // Laws of the springs change bodies so much that these begin anew; so does the body alone that
 // they are compared with, whose steps the journal has already.
-std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<EffectFit>& bodies,
-                               const std::vector<const Effect*>& effects, const WorkShare& stage) {
-  std::vector<EffectFit> fits;
-  const EffectFit& first = bodies.front();
+std::vector<Descent> FitLaws(const Fitting& fitting, const std::vector<Descent>& bodies,
+                             const std::vector<const Effect*>& effects, const WorkShare& stage) {
+  std::vector<Descent> fits;
+  const Descent& first = bodies.front();
   const auto add = [&](std::size_t body, const EffectValues& law) {
-    std::vector<EffectValues> values = first.start;
+    std::vector<EffectValues> values = first.hypothesis.effects;
     values.push_back(law);
-    EffectFit fit = fitting.Begin(body, values);
+    Descent fit = fitting.Begin(body, values);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   };
-  std::vector<EffectFit> alone = {fitting.Begin(first.body, first.start)};
+  std::vector<Descent> alone = {fitting.Begin(first.hypothesis.body, first.hypothesis.effects)};
   Halve(fitting, kLawCuts, stage.Part(0, 0.03), kWithoutEffect, &alone);
   for (const Effect* effect : effects) {
-    for (const Eigen::VectorXd& start : effect->Starts(fitting.Model(first).Apply(first.x))) {
-      if (effect->MakeTension(start)) add(first.body, {effect->name(), start});
+    for (const Eigen::VectorXd& start :
+         effect->Starts(fitting.Model(first.hypothesis).Apply(first.x))) {
+      if (effect->MakeTension(start)) add(first.hypothesis.body, {effect->name(), start});
     }
   }
   Halve(fitting, kLawCuts, stage.Part(0.03, 0.5), kWithLaw, &fits);
   std::vector<EffectValues> strong;
-  for (const EffectFit& fit : fits) {
-    if (fit.misfit < kStrong * alone.front().misfit) strong.push_back(fit.start.back());
+  for (const Descent& fit : fits) {
+    if (IsStrongLaw(fit.misfit, alone.front().misfit))
+      strong.push_back(fit.hypothesis.effects.back());
   }
   if (strong.empty()) {
     Keep(fits.size(), 1, &fits);
@@ -150,12 +136,11 @@ std::vector<EffectFit> FitLaws(const EffectFitting& fitting, const std::vector<E
 }
 
 // Fits with effects on bodies that were fitted under the highest gain only.
-std::vector<EffectFit> FitFromStart(const EffectFitting& fitting,
-                                    const std::vector<EffectFit>& bodies,
-                                    const std::vector<const Effect*>& effects,
-                                    const WorkShare& stage) {
+std::vector<Descent> FitFromStart(const Fitting& fitting, const std::vector<Descent>& bodies,
+                                  const std::vector<const Effect*>& effects,
+                                  const WorkShare& stage) {
   if (bodies.empty()) return {};
-  std::vector<EffectFit> fits = FitLaws(fitting, bodies, effects, stage.Part(0, 0.3));
+  std::vector<Descent> fits = FitLaws(fitting, bodies, effects, stage.Part(0, 0.3));
   for (const EffectTrace& trace :
        TraceEffects(fitting, bodies.front(), effects, kEarlyTraceGain, stage.Part(0.3, 0.5))) {
     if (trace.start.size() == 0) continue;
@@ -167,20 +152,25 @@ std::vector<EffectFit> FitFromStart(const EffectFitting& fitting,
   return fits;
 }
 
-}  // namespace
-
-bool IsFreeForm(const EffectFit& fit) {
-  return !fit.start.empty() && fit.start.back().values.size() > kFreeForm;
+// The best by score, that are worth a refit.
+std::vector<EffectTrace> BestTraces(std::vector<EffectTrace> traces) {
+  std::erase_if(traces, [](const EffectTrace& trace) { return trace.start.size() == 0; });
+  std::stable_sort(traces.begin(), traces.end(),
+                   [](const EffectTrace& p, const EffectTrace& q) { return p.score > q.score; });
+  traces.resize(std::min(traces.size(), kTracedEffects));
+  const double best = traces.empty() ? 0 : traces.front().score;
+  std::erase_if(traces, [&](const EffectTrace& trace) { return !IsWorthRefit(trace.score, best); });
+  return traces;
 }
 
-bool HasFreeForm(const Effect& effect) { return effect.value_count() > kFreeForm; }
+}  // namespace
 
-FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectValues>& known,
+FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
                        const WorkShare& stage) {
   FittedBodies bodies;
-  std::vector<EffectFit>& fits = bodies.fitted;
+  std::vector<Descent>& fits = bodies.fitted;
   for (std::size_t body = 0; body < fitting.bodies().size(); ++body) {
-    EffectFit fit = fitting.Begin(body, known);
+    Descent fit = fitting.Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
   Halve(fitting, kEarlyBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
@@ -189,62 +179,39 @@ FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectVal
   return bodies;
 }
 
-void FitFreely(const EffectFitting& fitting, const WorkShare& stage,
-               std::vector<EffectFit>* bodies) {
-  Halve(fitting, kFreeCuts, stage, kWithoutEffect, bodies);
-  JudgeAndSort(fitting, bodies);
+std::vector<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
+                               std::vector<Descent> bodies) {
+  Halve(fitting, kFreeCuts, stage, kWithoutEffect, &bodies);
+  return JudgeAndSort(fitting, bodies);
 }
 
-EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodies& bodies,
+EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects,
                                  const WorkShare& stage) {
   EffectSearchResult result;
-  result.fits = FitFromStart(fitting, bodies.early, effects, stage.Part(0, kEarlyShare));
+  std::vector<Descent> fits =
+      FitFromStart(fitting, bodies.early, effects, stage.Part(0, kEarlyShare));
   result.traces = TraceEffects(fitting, bodies.fitted.front(), effects, kTraceGain,
                                stage.Part(kEarlyShare, kTraceShare));
-  std::vector<std::size_t> order;
-  for (std::size_t n = 0; n < effects.size(); ++n) {
-    if (result.traces[n].start.size() > 0) order.push_back(n);
+  for (const EffectTrace& trace : BestTraces(result.traces)) {
+    for (const Descent& body : bodies.fitted) fits.push_back(With(body, trace));
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-    return result.traces[i].score > result.traces[j].score;
-  });
-  order.resize(std::min(order.size(), kTracedEffects));
-  const double least = order.empty() ? 0 : kLeastScore * result.traces[order.front()].score;
-  std::erase_if(order, [&](std::size_t n) { return result.traces[n].score <= least; });
-  for (std::size_t n : order) {
-    for (const EffectFit& body : bodies.fitted) result.fits.push_back(With(body, result.traces[n]));
-  }
-  Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &result.fits);
-  JudgeAndSort(fitting, &result.fits);
+  Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &fits);
+  result.verdicts = JudgeAndSort(fitting, fits);
   // of each effect the body that predicts best
   std::map<std::string, int> seen;
-  std::erase_if(result.fits, [&](const EffectFit& fit) { return seen[NewEffect(fit)]++ > 0; });
+  std::erase_if(result.verdicts, [&](const Verdict& verdict) {
+    return seen[verdict.descent.hypothesis.NewEffect()]++ > 0;
+  });
   return result;
 }
 
-void FollowAgain(const EffectFitting& fitting, const WorkShare& stage, EffectFit* fit) {
-  std::vector<EffectFit> again = {*fit};
+Verdict FollowAgain(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict) {
+  std::vector<Descent> again = {verdict.descent};
   Halve(fitting, kAgainCuts, stage, " once more", &again);
-  if (again.empty() || again[0].misfit >= fit->misfit || !fitting.Judge(&again[0])) return;
-  *fit = std::move(again[0]);
-}
-
-std::size_t ChooseSimplest(const std::vector<EffectFit>& fits, int block, std::uint64_t seed) {
-  const auto best =
-      static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(),
-                                                [](const EffectFit& p, const EffectFit& q) {
-                                                  return p.track.held < q.track.held;
-                                                }) -
-                               fits.begin());
-  std::size_t chosen = best;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (ParameterCount(fits[i]) >= ParameterCount(fits[chosen])) continue;
-    const BootstrapResult worse =
-        BlockBootstrap(Difference(fits[i].held, fits[best].held), block, kSimplestDraws, seed);
-    if (worse.mean <= worse.error) chosen = i;
-  }
-  return chosen;
+  if (again.empty() || again[0].misfit >= verdict.descent.misfit) return verdict;
+  const std::optional<Verdict> better = fitting.Judge(again[0]);
+  return better ? *better : verdict;
 }
 
 }  // namespace physpring

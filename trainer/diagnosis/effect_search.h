@@ -12,8 +12,6 @@
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_EFFECT_SEARCH_H_
 
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "trainer/diagnosis/effect_trace.h"
@@ -25,38 +23,28 @@ namespace physpring {
 // The bodies that fit best with the effects that are known, the best first. Those that diverge are
 // left out.
 struct FittedBodies {
-  std::vector<EffectFit> early;   // under the highest gain; none after an effect was found
-  std::vector<EffectFit> fitted;  // down to the gain of the trace
+  std::vector<Descent> early;   // under the highest gain; none after an effect was found
+  std::vector<Descent> fitted;  // down to the gain of the trace
 };
-FittedBodies FitBodies(const EffectFitting& fitting, const std::vector<EffectValues>& known,
+FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
                        const WorkShare& stage);
 
-// Fits them without an observer and judges them, least held-out error first.
-void FitFreely(const EffectFitting& fitting, const WorkShare& stage,
-               std::vector<EffectFit>* bodies);
+// Fitted without an observer and judged, least held-out error first.
+std::vector<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
+                               std::vector<Descent> bodies);
 
 struct EffectSearchResult {
   std::vector<EffectTrace> traces;  // of each effect, on the best body
-  std::vector<EffectFit> fits;      // of the best effects, judged, least held-out error first
+  std::vector<Verdict> verdicts;    // on the best effects, least held-out error first
 };
 
 // `bodies`: fits without the effect; at least one that is fitted.
-EffectSearchResult SearchEffects(const EffectFitting& fitting, const FittedBodies& bodies,
+EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
-// Fits it once more from where it is, under an observer and then without one: what is far from its
-// least there may come nearer to it. It stays as it is where that fits worse.
-void FollowAgain(const EffectFitting& fitting, const WorkShare& stage, EffectFit* fit);
-
-// Whether the fit's new effect has so many parameters that it takes the shape of others. It does
-// not compete with them.
-bool IsFreeForm(const EffectFit& fit);
-bool HasFreeForm(const Effect& effect);
-
-// Which of `fits` to take: of those whose held-out error is within one standard error (of the
-// paired difference) of the least, the one with the fewest parameters. `block`: frames that are
-// drawn together (block_bootstrap.h). `fits` is not empty.
-std::size_t ChooseSimplest(const std::vector<EffectFit>& fits, int block, std::uint64_t seed);
+// Fitted once more from where it is, under an observer and then without one: what is far from its
+// least there may come nearer to it. The same where that fits worse.
+Verdict FollowAgain(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict);
 
 }  // namespace physpring
 

@@ -24,12 +24,12 @@ struct Job {
 
 class Tracer {
  public:
-  Tracer(const EffectFitting& fitting, const EffectFit& fit, double gain)
+  Tracer(const Fitting& fitting, const Descent& fit, double gain)
       : fitting_(fitting), fit_(fit), gain_(gain) {}
 
   // The point to trace from; false if it cannot be evaluated.
   bool Prepare() {
-    EffectProblem own = fitting_.Problem(fit_, gain_);
+    EffectProblem own = fitting_.Problem(fit_.hypothesis, gain_);
     if (!own.FixSubsteps(fit_.x)) return false;
     const auto r = own.Residuals(fit_.x);
     if (!r || r->size() == 0) return false;
@@ -70,8 +70,8 @@ class Tracer {
 
  private:
   EffectProblem Add(const Effect& effect, const Eigen::VectorXd& start) const {
-    EffectFit with = fit_;
-    with.start.push_back({effect.name(), start});
+    Hypothesis with = fit_.hypothesis;
+    with.effects.push_back({effect.name(), start});
     return fitting_.Problem(with, gain_);
   }
   Eigen::VectorXd Extend(const Eigen::VectorXd& start) const {
@@ -113,8 +113,8 @@ class Tracer {
     return least;
   }
 
-  const EffectFitting& fitting_;
-  const EffectFit& fit_;
+  const Fitting& fitting_;
+  const Descent& fit_;
   const double gain_;
   Eigen::VectorXd r_;
   Eigen::MatrixXd j0_;  // the model's own columns
@@ -124,14 +124,14 @@ class Tracer {
 
 }  // namespace
 
-std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const EffectFit& fit,
+std::vector<EffectTrace> TraceEffects(const Fitting& fitting, const Descent& fit,
                                       const std::vector<const Effect*>& effects, double gain,
                                       const WorkShare& stage) {
   std::vector<EffectTrace> traces;
   for (const Effect* effect : effects) traces.push_back({effect, 0, {}});
   Tracer tracer(fitting, fit, gain);
   if (!tracer.Prepare()) return traces;
-  const SpringMassSystem system = fitting.Model(fit).Apply(fit.x);
+  const SpringMassSystem system = fitting.Model(fit.hypothesis).Apply(fit.x);
   std::vector<Job> jobs;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     for (Eigen::VectorXd& start : effects[i]->Starts(system)) jobs.push_back({i, std::move(start)});
@@ -140,7 +140,7 @@ std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const Effect
     ParallelFor(static_cast<int>(jobs.size()), fitting.threads(), [&](int n) {
       Job& job = jobs[static_cast<std::size_t>(n)];
       const Effect& effect = *effects[job.effect];
-      PieceKey key = KeyOf(kind, fit);
+      PieceKey key = KeyOf(kind, fit.hypothesis);
       job.score = fitting.journal().Get(
           key.Add(gain).Add(fit.x).Add(effect.name()).Add(job.start),
           [&] { return Eigen::VectorXd::Constant(1, score(effect, job.start)); })[0];

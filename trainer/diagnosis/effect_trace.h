@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/fitting.h"
 #include "twin/effects/effect.h"
 
 namespace physpring {
@@ -22,7 +22,7 @@ struct EffectTrace {
 
 // Of each of `effects` added to `fit`, in their order, under an observer of this gain. `stage`: its
 // share of the work.
-std::vector<EffectTrace> TraceEffects(const EffectFitting& fitting, const EffectFit& fit,
+std::vector<EffectTrace> TraceEffects(const Fitting& fitting, const Descent& fit,
                                       const std::vector<const Effect*>& effects, double gain,
                                       const WorkShare& stage);
 

@@ -41,27 +41,28 @@ ResidualForce Unpack(const Eigen::VectorXd& packed, int nodes) {
 
 }  // namespace
 
-std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
-                                         const std::vector<const EffectFit*>& fits,
+std::vector<ResidualPattern> ResidualsOf(const Fitting& fitting,
+                                         const std::vector<const Verdict*>& verdicts,
                                          double deviation, const WorkShare& share) {
   const Recording& recording = *fitting.recordings()[0].recording;
-  const auto count = static_cast<int>(fits.size());
-  std::vector<ResidualPattern> patterns(fits.size());
+  const auto count = static_cast<int>(verdicts.size());
+  std::vector<ResidualPattern> patterns(verdicts.size());
   fitting.journal().Stage(share, count, "finding the residual forces");
   ParallelFor(count, fitting.threads(), [&](int i) {
-    const EffectFit& fit = *fits[static_cast<std::size_t>(i)];
+    const Verdict& verdict = *verdicts[static_cast<std::size_t>(i)];
     ResidualForceOptions options;
-    options.controller_velocity = fit.controller_velocity;
+    options.controller_velocity = verdict.controller_velocity;
     options.substeps =
-        static_cast<int>(std::ceil(DiagnosisRate(fit.system, recording.fps) / recording.fps));
+        static_cast<int>(std::ceil(DiagnosisRate(verdict.system, recording.fps) / recording.fps));
     options.deviation = deviation;
     options.difference = DirectionDifference(recording, false);
-    PieceKey key = KeyOf("residual forces", fit);
-    key.Add(fit.system.effects).Add(fit.system.stiffness).Add(fit.system.dashpot);
+    PieceKey key = KeyOf("residual forces", verdict.descent.hypothesis);
+    if (verdict.provenance == Verdict::Provenance::kTraining) key.Add("training");
+    key.Add(verdict.system.effects).Add(verdict.system.stiffness).Add(verdict.system.dashpot);
     const Eigen::VectorXd packed = fitting.journal().Get(
-        key, [&] { return Pack(FindResidualForce(fit.system, recording, options)); });
+        key, [&] { return Pack(FindResidualForce(verdict.system, recording, options)); });
     patterns[static_cast<std::size_t>(i)] =
-        PatternOf(Unpack(packed, fit.system.node_count()), fit.system, recording.fps);
+        PatternOf(Unpack(packed, verdict.system.node_count()), verdict.system, recording.fps);
   });
   return patterns;
 }

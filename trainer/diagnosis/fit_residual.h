@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The residual forces of fits, on the first recording.
+// The residual forces of verdicts' systems, on the first recording.
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_FIT_RESIDUAL_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_FIT_RESIDUAL_H_
 
 #include <vector>
 
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/fitting.h"
 #include "trainer/diagnosis/residual_pattern.h"
 
 namespace physpring {
 
 // `deviation`: of the measurements, m, a coordinate.
-std::vector<ResidualPattern> ResidualsOf(const EffectFitting& fitting,
-                                         const std::vector<const EffectFit*>& fits,
+std::vector<ResidualPattern> ResidualsOf(const Fitting& fitting,
+                                         const std::vector<const Verdict*>& verdicts,
                                          double deviation, const WorkShare& share);
 
 }  // namespace physpring

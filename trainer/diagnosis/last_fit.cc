@@ -11,30 +11,30 @@ constexpr double kTolerance = 2e-4;  // part of the squared misfit that a step m
 
 }  // namespace
 
-std::optional<EffectFit> FitAllFrames(const EffectFitting& fitting, const WorkShare& share,
-                                      const EffectFit& chosen) {
+std::optional<Verdict> FitAllFrames(const Fitting& fitting, const WorkShare& share,
+                                    const Verdict& chosen) {
   std::vector<SplitRecording> all;
   for (const SplitRecording& split : fitting.recordings()) all.push_back(FitHeldOut(split));
-  // effects of the body itself stay as they are, before those that were added
-  const std::vector<EffectValues>& own = fitting.bodies()[chosen.body].base.effects;
+  // effects of the body itself (only a body without others has any) stay as they are, before those
+  // that were added
+  const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   const std::vector<EffectValues> added(
       chosen.system.effects.begin() + static_cast<long>(own.size()), chosen.system.effects.end());
   DiagnosisBody body{chosen.system, chosen.controller_velocity, true, "as chosen"};
   body.base.effects = own;
-  const EffectFitting fitting_all({body}, all, fitting.threads(), &fitting.journal());
-  std::vector<EffectFit> fits = {fitting_all.Begin(0, added)};
-  if (fits[0].x.size() == 0) return {};
+  const Fitting fitting_all({body}, all, fitting.threads(), &fitting.journal());
+  std::vector<Descent> descents = {fitting_all.Begin(0, added)};
+  if (descents[0].x.size() == 0) return {};
   fitting.journal().Stage(share, kSteps, "fitting to all frames");
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kSteps; ++step) {
-    fits[0].converged = false;
-    fitting_all.Descend(0, 1, &fits);
-    if (fits.empty()) return {};
-    if (fits[0].misfit > (1 - kTolerance) * before) break;
-    before = fits[0].misfit;
+    descents[0].converged = false;
+    fitting_all.Descend(0, 1, &descents);
+    if (descents.empty()) return {};
+    if (descents[0].misfit > (1 - kTolerance) * before) break;
+    before = descents[0].misfit;
   }
-  if (!fitting_all.Judge(&fits[0])) return {};
-  return fits[0];
+  return fitting_all.Judge(descents[0]);
 }
 
 }  // namespace physpring

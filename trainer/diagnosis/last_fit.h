@@ -5,15 +5,15 @@
 
 #include <optional>
 
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/fitting.h"
 
 namespace physpring {
 
-// The common factors and the effects of the fit that was chosen, from where they are, by
+// The common factors and the effects of the verdict that was chosen, from where they are, by
 // Levenberg-Marquardt on all frames, the held-out ones included: `track.fit` is over all of them,
 // and nothing is left to judge by. Nothing if the motion diverges.
-std::optional<EffectFit> FitAllFrames(const EffectFitting& fitting, const WorkShare& share,
-                                      const EffectFit& chosen);
+std::optional<Verdict> FitAllFrames(const Fitting& fitting, const WorkShare& share,
+                                    const Verdict& chosen);
 
 }  // namespace physpring
 

@@ -7,12 +7,26 @@
 
 namespace physpring {
 
-std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitRecording>& recordings,
-                                   const EffectFit& like) {
-  EffectFit fit = like;
-  fit.trained = true;
-  fit.controller_velocity = twin.controller_velocity;
-  fit.system = twin.levels[0].system;
+namespace {
+
+// A recording after the other, with the frames to fit only.
+FitData DataOf(const std::vector<SplitRecording>& recordings) {
+  FitData data;
+  for (const SplitRecording& split : recordings) {
+    if (split.last(SplitRecording::Use::kFit) == 0) continue;
+    data.continuous_recording.push_back(static_cast<int>(data.recordings.size()));
+    data.recordings.push_back(OnlyFitFrames(split.All()));
+  }
+  return data;
+}
+
+}  // namespace
+
+std::optional<Verdict> JudgeTwin(const Twin& twin, const std::vector<SplitRecording>& recordings) {
+  Verdict verdict;
+  verdict.provenance = Verdict::Provenance::kTraining;
+  verdict.controller_velocity = twin.controller_velocity;
+  verdict.system = twin.levels[0].system;
   std::vector<std::vector<Points>> predicted;
   try {
     for (const SplitRecording& split : recordings) {
@@ -21,27 +35,21 @@ std::optional<EffectFit> AsTrained(const Twin& twin, const std::vector<SplitReco
   } catch (const Error&) {
     return {};
   }
-  ScorePrediction(recordings, predicted, &fit);
-  return fit;
+  ScorePrediction(recordings, predicted, &verdict);
+  return verdict;
 }
 
-std::optional<EffectFit> TrainAnew(const EffectFitting& fitting, const WorkShare& share,
-                                   const EffectFit& like) {
-  FitData data;
-  for (const SplitRecording& split : fitting.recordings()) {
-    if (split.last(SplitRecording::Use::kFit) == 0) continue;
-    data.continuous_recording.push_back(static_cast<int>(data.recordings.size()));
-    data.recordings.push_back(OnlyFitFrames(split.All()));
-  }
+std::optional<Verdict> TrainAnew(const Fitting& fitting, const WorkShare& share,
+                                 const std::vector<EffectValues>& effects) {
   TrainOptions options;
-  options.effects = like.system.effects;
+  options.effects = effects;
   options.threads = fitting.threads();
   PieceKey key("training");
-  key.Add(options.effects);
+  key.Add(effects);
   try {
     const Work work(&fitting.journal(), key, share,
-                    "training anew with " + options.effects.back().name + ": ");
-    return AsTrained(FitDense(data, options, work), fitting.recordings(), like);
+                    "training anew with " + effects.back().name + ": ");
+    return JudgeTwin(FitDense(DataOf(fitting.recordings()), options, work), fitting.recordings());
   } catch (const Error&) {
     return {};
   }

@@ -35,14 +35,14 @@ Recording TiltedRope(double tilt, double tilt_where_held) {
 }
 
 // The last fit of a rope with these effects, the last of which is not the body's own.
-std::optional<EffectFit> LastFit(const Recording& recording,
-                                 const std::vector<EffectValues>& effects, bool trusted) {
+std::optional<Verdict> LastFit(const Recording& recording, const std::vector<EffectValues>& effects,
+                               bool trusted) {
   DiagnosisBody body{MakeStartSystem(recording, {}), true, trusted, "rope"};
-  EffectFit chosen;
+  Verdict chosen;
   chosen.system = body.base;
   chosen.system.effects = effects;
   body.base.effects.assign(effects.begin(), effects.end() - 1);
-  const EffectFitting fitting({body}, {HoldOutFrames(recording)}, 1);
+  const Fitting fitting({body}, {HoldOutFrames(recording)}, 1);
   return FitAllFrames(fitting, {}, chosen);
 }
 
@@ -76,11 +76,11 @@ TEST(FitAllFrames, LeavesTheBodysOwnEffects) {
 TEST(FitAllFrames, SaysWhenTheMotionDiverges) {
   const Recording recording = TiltedRope(0.1, 0.1);
   DiagnosisBody body{MakeStartSystem(recording, {}), true, false, "rope"};
-  EffectFit chosen;
+  Verdict chosen;
   chosen.system = body.base;
   chosen.system.stiffness *= std::numeric_limits<double>::infinity();
   chosen.system.effects = {Tilt(0.1, 0)};
-  const EffectFitting fitting({body}, {HoldOutFrames(recording)}, 1);
+  const Fitting fitting({body}, {HoldOutFrames(recording)}, 1);
   EXPECT_FALSE(FitAllFrames(fitting, {}, chosen));
 }
 

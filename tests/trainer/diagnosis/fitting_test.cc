@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/fitting.h"
 
 #include <gtest/gtest.h>
 
@@ -25,17 +25,17 @@ Recording SofterRope() {
   return recording;
 }
 
-EffectFitting FittingOf(const Recording& recording) {
+Fitting FittingOf(const Recording& recording) {
   const DiagnosisBody body{MakeStartSystem(recording, {}), true, true, "rope"};
-  return EffectFitting({body}, {HoldOutFrames(recording)}, 1);
+  return Fitting({body}, {HoldOutFrames(recording)}, 1);
 }
 
 Eigen::VectorXd ResidualsAt(const Recording& recording, double gain) {
-  const EffectFitting fitting = FittingOf(recording);
-  const EffectFit fit = fitting.Begin(0, {});
-  EffectProblem problem = fitting.Problem(fit, gain);
-  problem.FixSubsteps(fit.x);
-  return *problem.Residuals(fit.x);
+  const Fitting fitting = FittingOf(recording);
+  const Descent descent = fitting.Begin(0, {});
+  EffectProblem problem = fitting.Problem(descent.hypothesis, gain);
+  problem.FixSubsteps(descent.x);
+  return *problem.Residuals(descent.x);
 }
 
 // Moves what was measured in the held-out frames.
@@ -48,43 +48,42 @@ Recording WithOtherHeldFrames(const Recording& recording) {
   return other;
 }
 
-TEST(EffectFitting, AnObserverMakesResidualsSmaller) {
+TEST(Fitting, AnObserverMakesResidualsSmaller) {
   const Recording recording = SofterRope();
   EXPECT_LT(ResidualsAt(recording, 0.5).norm(), 0.5 * ResidualsAt(recording, 0).norm());
 }
 
-TEST(EffectFitting, AnObserverSeesNoHeldOutFrames) {
+TEST(Fitting, AnObserverSeesNoHeldOutFrames) {
   const Recording recording = SofterRope();
   const Recording other = WithOtherHeldFrames(recording);
   ASSERT_NE(HoldOutFrames(recording).last(Use::kHeld), 0);
   EXPECT_EQ(ResidualsAt(recording, 0.5), ResidualsAt(other, 0.5));
 }
 
-TEST(EffectFitting, JudgesWithoutAnObserver) {
+TEST(Fitting, JudgesWithoutAnObserver) {
   const Recording recording = SofterRope();
   const Recording other = WithOtherHeldFrames(recording);
-  const EffectFitting fitting = FittingOf(recording), judged = FittingOf(other);
-  EffectFit fit = fitting.Begin(0, {}), same = fit;
-  std::vector<EffectFit> fits = {fit};
-  fitting.Descend(0.5, 2, &fits);
-  ASSERT_EQ(fits.size(), 1U);
-  same = fits[0];
-  ASSERT_TRUE(fitting.Judge(&fits[0]));
-  ASSERT_TRUE(judged.Judge(&same));
-  EXPECT_EQ(fits[0].track.fit, same.track.fit);
-  EXPECT_NE(fits[0].track.held, same.track.held);
+  const Fitting fitting = FittingOf(recording), judged = FittingOf(other);
+  std::vector<Descent> descents = {fitting.Begin(0, {})};
+  fitting.Descend(0.5, 2, &descents);
+  ASSERT_EQ(descents.size(), 1U);
+  const auto verdict = fitting.Judge(descents[0]), same = judged.Judge(descents[0]);
+  ASSERT_TRUE(verdict);
+  ASSERT_TRUE(same);
+  EXPECT_EQ(verdict->track.fit, same->track.fit);
+  EXPECT_NE(verdict->track.held, same->track.held);
 }
 
-TEST(EffectFitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
+TEST(Fitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
   const Recording recording = SofterRope();
   SpringMassSystem stiff = MakeStartSystem(recording, {});
   stiff.stiffness *= 1e6;
   stiff.dashpot *= 30;
   ASSERT_GT(DiagnosisRate(stiff, recording.fps), 10000);
-  const EffectFitting fitting({{stiff, true, true, "rope"}}, {HoldOutFrames(recording)}, 1);
-  const EffectFit fit = fitting.Begin(0, {});
-  ASSERT_TRUE(std::isfinite(fit.misfit));
-  EXPECT_EQ(fitting.Problem(fit, 0).SystemAt(fit.x).dashpot, stiff.dashpot);
+  const Fitting fitting({{stiff, true, true, "rope"}}, {HoldOutFrames(recording)}, 1);
+  const Descent descent = fitting.Begin(0, {});
+  ASSERT_TRUE(std::isfinite(descent.misfit));
+  EXPECT_EQ(fitting.Problem(descent.hypothesis, 0).SystemAt(descent.x).dashpot, stiff.dashpot);
 }
 
 }  // namespace

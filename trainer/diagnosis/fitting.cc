@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/diagnosis/effect_fit.h"
+#include "trainer/diagnosis/fitting.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "trainer/factors.h"
@@ -28,21 +29,6 @@ constexpr int kFollowedSpringSteps = 3;
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
 constexpr double kMostRate = 10000, kMostCommonRate = 5000;
 constexpr double kTrustedRoom = 1.25;  // above what a trusted body takes as it came
-
-// Calls `work` for each fit and takes out those for which it returns false.
-template <class Work>
-void ForEach(int threads, std::vector<EffectFit>* fits, Work work) {
-  std::vector<char> good(fits->size(), 0);
-  ParallelFor(static_cast<int>(fits->size()), threads, [&](int i) {
-    const auto n = static_cast<std::size_t>(i);
-    good[n] = work(&(*fits)[n]) ? 1 : 0;
-  });
-  std::vector<EffectFit> kept;
-  for (std::size_t n = 0; n < fits->size(); ++n) {
-    if (good[n] != 0) kept.push_back(std::move((*fits)[n]));
-  }
-  *fits = std::move(kept);
-}
 
 // The state of either method as one vector, and back.
 template <class State>
@@ -78,19 +64,21 @@ GaussNewtonOptions Prior(const EffectModel& model) {
 }  // namespace
 
 void ScorePrediction(const std::vector<SplitRecording>& recordings,
-                     const std::vector<std::vector<Points>>& predicted, EffectFit* fit) {
-  fit->held = TrackOf(recordings, predicted, SplitRecording::Use::kHeld);
-  fit->track = {Mean(TrackOf(recordings, predicted, SplitRecording::Use::kFit)), Mean(fit->held)};
+                     const std::vector<std::vector<Points>>& predicted, Verdict* verdict) {
+  verdict->held = TrackOf(recordings, predicted, SplitRecording::Use::kHeld);
+  verdict->track = {Mean(TrackOf(recordings, predicted, SplitRecording::Use::kFit)),
+                    Mean(verdict->held)};
 }
 
-PieceKey KeyOf(const std::string& kind, const EffectFit& fit) {
+PieceKey KeyOf(const std::string& kind, const Hypothesis& hypothesis) {
   PieceKey key(kind);
-  if (fit.trained) key.Add("trained");
-  return key.Add(static_cast<double>(fit.body)).Add(fit.start_substeps).Add(fit.start);
+  return key.Add(static_cast<double>(hypothesis.body))
+      .Add(hypothesis.start_substeps)
+      .Add(hypothesis.effects);
 }
 
-EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
-                             std::vector<SplitRecording> recordings, int threads, Journal* journal)
+Fitting::Fitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings,
+                 int threads, Journal* journal)
     : bodies_(std::move(bodies)),
       recordings_(std::move(recordings)),
       threads_(threads),
@@ -98,9 +86,9 @@ EffectFitting::EffectFitting(std::vector<DiagnosisBody> bodies,
   for (const SplitRecording& split : recordings_) followed_.push_back(DropHeldOut(split));
 }
 
-double EffectFitting::difference() const { return FactorDifference(*recordings_[0].recording); }
+double Fitting::difference() const { return FactorDifference(*recordings_[0].recording); }
 
-SpringMassSystem EffectFitting::Base(std::size_t body, double start_substeps) const {
+SpringMassSystem Fitting::Base(std::size_t body, double start_substeps) const {
   SpringMassSystem base = bodies_[body].base;
   if (!bodies_[body].trusted) {
     ScaleToSubsteps(1 / recordings_[0].recording->fps, start_substeps, kStepSafety, &base);
@@ -108,38 +96,36 @@ SpringMassSystem EffectFitting::Base(std::size_t body, double start_substeps) co
   return base;
 }
 
-EffectFit EffectFitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) const {
-  EffectFit best;
+Descent Fitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) const {
+  Descent best;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
-    EffectFit fit;
-    fit.body = body;
-    fit.start = effects;
-    fit.start_substeps = substeps;
-    const EffectModel model = Model(fit);
-    fit.x = Eigen::VectorXd::Zero(model.size());
+    Descent descent{{body, effects, substeps}, {}};
+    const EffectModel model = Model(descent.hypothesis);
+    descent.x = Eigen::VectorXd::Zero(model.size());
     EffectProblem problem = MakeProblem(model, bodies_[body], kObserverGains[0], 1);
-    if (!problem.FixSubsteps(fit.x)) continue;
-    const auto r = problem.Residuals(fit.x);
+    if (!problem.FixSubsteps(descent.x)) continue;
+    const auto r = problem.Residuals(descent.x);
     if (!r || r->squaredNorm() >= best.misfit) continue;
-    fit.misfit = r->squaredNorm();
-    best = std::move(fit);
+    descent.misfit = r->squaredNorm();
+    best = std::move(descent);
     if (bodies_[body].trusted) break;
   }
   return best;
 }
 
-EffectModel EffectFitting::Model(const EffectFit& fit) const {
-  const DiagnosisBody& body = bodies_[fit.body];
-  return EffectModel(CommonFactors(Base(fit.body, fit.start_substeps), *recordings_[0].recording),
-                     body.trusted ? kTrusted : EffectModel::OwnRange{}, fit.start);
+EffectModel Fitting::Model(const Hypothesis& hypothesis) const {
+  const DiagnosisBody& body = bodies_[hypothesis.body];
+  return EffectModel(
+      CommonFactors(Base(hypothesis.body, hypothesis.start_substeps), *recordings_[0].recording),
+      body.trusted ? kTrusted : EffectModel::OwnRange{}, hypothesis.effects);
 }
 
-EffectProblem EffectFitting::Problem(const EffectFit& fit, double gain) const {
-  return MakeProblem(Model(fit), bodies_[fit.body], gain, 1);
+EffectProblem Fitting::Problem(const Hypothesis& hypothesis, double gain) const {
+  return MakeProblem(Model(hypothesis), bodies_[hypothesis.body], gain, 1);
 }
 
-EffectProblem EffectFitting::MakeProblem(const EffectModel& model, const DiagnosisBody& body,
-                                         double gain, int threads) const {
+EffectProblem Fitting::MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
+                                   int threads) const {
   EffectProblem::Options options;
   options.threads = threads;
   options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
@@ -158,16 +144,16 @@ EffectProblem EffectFitting::MakeProblem(const EffectModel& model, const Diagnos
   return EffectProblem(model, gain > 0 ? followed_ : recordings_, options);
 }
 
-bool EffectFitting::DescendOne(double gain, int steps, int threads, EffectFit* fit) const {
-  EffectProblem problem = Problem(*fit, gain);
+bool Fitting::DescendOne(double gain, int steps, int threads, Descent* descent) const {
+  EffectProblem problem = Problem(descent->hypothesis, gain);
   LevenbergMarquardtOptions options;
   options.difference = difference();
   options.threads = threads;
   LevenbergMarquardtState state;
-  state.x = fit->x;
-  state.damping = fit->damping;
+  state.x = descent->x;
+  state.damping = descent->damping;
   for (int step = 0; step < steps && !state.converged; ++step) {
-    PieceKey key = KeyOf("Levenberg-Marquardt", *fit);
+    PieceKey key = KeyOf("Levenberg-Marquardt", descent->hypothesis);
     const Eigen::VectorXd after = journal().Get(key.Add(gain).Add(state.x).Add(state.damping), [&] {
       if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
       return Pack(LevenbergMarquardtStep(
@@ -177,65 +163,92 @@ bool EffectFitting::DescendOne(double gain, int steps, int threads, EffectFit* f
     Unpack(after, &state);
   }
   if (!(state.mean_square > 0)) return false;
-  fit->x = state.x;
-  fit->damping = state.damping;
-  fit->misfit = state.mean_square;
-  fit->converged = state.converged;
+  descent->x = state.x;
+  descent->damping = state.damping;
+  descent->misfit = state.mean_square;
+  descent->converged = state.converged;
   return true;
 }
 
-void EffectFitting::Descend(double gain, int steps, std::vector<EffectFit>* fits) const {
-  const int each = std::max(1, threads_ / std::max(1, static_cast<int>(fits->size())));
-  ForEach(threads_, fits, [&](EffectFit* fit) { return DescendOne(gain, steps, each, fit); });
+void Fitting::Descend(double gain, int steps, std::vector<Descent>* descents) const {
+  const auto count = static_cast<int>(descents->size());
+  const int each = std::max(1, threads_ / std::max(1, count));
+  std::vector<char> good(descents->size(), 0);
+  ParallelFor(count, threads_, [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    good[n] = DescendOne(gain, steps, each, &(*descents)[n]) ? 1 : 0;
+  });
+  std::vector<Descent> kept;
+  for (std::size_t n = 0; n < descents->size(); ++n) {
+    if (good[n] != 0) kept.push_back(std::move((*descents)[n]));
+  }
+  *descents = std::move(kept);
 }
 
-bool EffectFitting::Predict(EffectProblem* problem, const Eigen::VectorXd& x,
-                            EffectFit* fit) const {
-  if (!problem->FixSubsteps(x)) return false;
+std::optional<Verdict> Fitting::JudgeAt(EffectProblem* problem, const Eigen::VectorXd& x,
+                                        const Descent& descent) const {
+  if (!problem->FixSubsteps(x)) return {};
   const auto predicted = problem->Predict(x);
-  if (!predicted) return false;
-  fit->system = problem->SystemAt(x);
-  fit->controller_velocity = bodies_[fit->body].controller_velocity;
-  ScorePrediction(recordings_, *predicted, fit);
-  return true;
+  if (!predicted) return {};
+  Verdict verdict;
+  verdict.descent = descent;
+  verdict.system = problem->SystemAt(x);
+  verdict.controller_velocity = bodies_[descent.hypothesis.body].controller_velocity;
+  ScorePrediction(recordings_, *predicted, &verdict);
+  return verdict;
 }
 
-bool EffectFitting::Judge(EffectFit* fit) const {
-  EffectProblem problem = Problem(*fit, 0);
-  return Predict(&problem, fit->x, fit);
+std::optional<Verdict> Fitting::Judge(const Descent& descent) const {
+  EffectProblem problem = Problem(descent.hypothesis, 0);
+  return JudgeAt(&problem, descent.x, descent);
 }
 
-void EffectFitting::JudgeAll(std::vector<EffectFit>* fits) const {
-  ForEach(threads_, fits, [&](EffectFit* fit) { return Judge(fit); });
+std::vector<Verdict> Fitting::JudgeAll(const std::vector<Descent>& descents) const {
+  std::vector<std::optional<Verdict>> judged(descents.size());
+  ParallelFor(static_cast<int>(descents.size()), threads_, [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    judged[n] = Judge(descents[n]);
+  });
+  std::vector<Verdict> verdicts;
+  for (std::optional<Verdict>& verdict : judged) {
+    if (verdict) verdicts.push_back(std::move(*verdict));
+  }
+  return verdicts;
 }
 
-void EffectFitting::RefitSprings(int steps, EffectFit* fit) const {
-  SpringMassSystem base = fit->system;
+Verdict Fitting::RefitSprings(int steps, const Verdict& verdict) const {
+  assert(verdict.provenance == Verdict::Provenance::kCommonFactors);
+  const Hypothesis& hypothesis = verdict.descent.hypothesis;
+  const DiagnosisBody& body = bodies_[hypothesis.body];
+  SpringMassSystem base = verdict.system;
   base.effects.clear();
-  const EffectModel model(SpringFactors(base, *recordings_[0].recording), {}, fit->system.effects);
+  const EffectModel model(SpringFactors(base, *recordings_[0].recording), {},
+                          verdict.system.effects);
   const GaussNewtonOptions prior = Prior(model);
   GaussNewtonState state;
   state.x = Eigen::VectorXd::Zero(model.size());
   for (const bool followed : {true, false}) {
     const double gain = followed ? kFollowedGain : 0;
-    EffectProblem problem = MakeProblem(model, bodies_[fit->body], gain, threads_);
+    EffectProblem problem = MakeProblem(model, body, gain, threads_);
     state.damping = 1e-3;
     state.converged = false;
     int slow = 0;
     for (int step = 0; step < (followed ? kFollowedSpringSteps : steps); ++step) {
       const GaussNewtonState before = state;
-      PieceKey key = KeyOf("Gauss-Newton", *fit);
+      PieceKey key = KeyOf("Gauss-Newton", hypothesis);
       const Eigen::VectorXd after =
-          journal().Get(key.Add(fit->x).Add(gain).Add(state.x).Add(state.damping),
+          journal().Get(key.Add(verdict.descent.x).Add(gain).Add(state.x).Add(state.damping),
                         [&] { return Pack(GaussNewtonStep(&problem, state, prior)); });
       Unpack(after, &state);
       slow = step > 0 && state.mean_square > kSlowStep * before.mean_square ? slow + 1 : 0;
       if (slow == kMostSlowSteps || IsStuck(before, state, step == 0)) break;
     }
   }
-  EffectProblem problem = MakeProblem(model, bodies_[fit->body], 0, threads_);
-  EffectFit refitted = *fit;
-  if (Predict(&problem, state.x, &refitted)) *fit = std::move(refitted);
+  EffectProblem problem = MakeProblem(model, body, 0, threads_);
+  std::optional<Verdict> refitted = JudgeAt(&problem, state.x, verdict.descent);
+  if (!refitted) return verdict;
+  refitted->provenance = Verdict::Provenance::kSprings;
+  return *refitted;
 }
 
 }  // namespace physpring
