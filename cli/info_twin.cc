@@ -8,6 +8,7 @@
 #include "twin/cone_name.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
+#include "twin/level_numbers.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -27,20 +28,20 @@ Range RangeOf(const Eigen::VectorXd& values) {
   return {sorted.front(), (sorted[(n - 1) / 2] + sorted[n / 2]) / 2, sorted.back()};
 }
 
-// What a level has one of for each node or spring.
-struct Quantity {
-  const char* name;
-  const char* unit;
-  const char* key;  // in JSON
-  const Eigen::VectorXd* values;
-};
+// "rest_length_m": the key of a number in JSON.
+std::string KeyOf(const std::string& name, const std::string& unit) {
+  std::string key = unit.empty() ? name : name + "_" + unit;
+  for (char& letter : key) {
+    if (letter == ' ' || letter == '/') letter = '_';
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return key;
+}
 
-std::vector<Quantity> QuantitiesOf(const SpringMassSystem& system) {
-  return {{"mass", "kg", "mass_kg", &system.mass},
-          {"contact radius", "m", "contact_radius_m", &system.contact_radius},
-          {"stiffness", "N/m", "stiffness_n_m", &system.stiffness},
-          {"rest length", "m", "rest_length_m", &system.rest_length},
-          {"dashpot", "N s/m", "dashpot_n_s_m", &system.dashpot}};
+// "rest length"
+std::string WordsOf(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 // Frames [0, train_frames) of each recording.
@@ -78,10 +79,10 @@ std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
       "  {:<14} {:>10} {:>10} {:>10}\n",
       number, system.node_count(), system.spring_count(), system.mass.sum(),
       1.0 / level.substeps_per_second, stable, "", "least", "median", "most");
-  for (const Quantity& quantity : QuantitiesOf(system)) {
-    const Range range = RangeOf(*quantity.values);
-    text += fmt::format("  {:<14} {:>10.4g} {:>10.4g} {:>10.4g} {}\n", quantity.name, range.least,
-                        range.median, range.most, quantity.unit);
+  for (const LevelList& list : kLevelLists) {
+    const Range range = RangeOf(list.In(system));
+    text += fmt::format("  {:<14} {:>10.4g} {:>10.4g} {:>10.4g} {}\n", WordsOf(list.name),
+                        range.least, range.median, range.most, list.unit);
   }
   const ContactCoefficients& contact = system.contact;
   text += fmt::format("  drag {:.4g} 1/s; contact: restitution {:.3g}, friction {:.3g}{}; ",
@@ -107,17 +108,18 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
                {"total_mass_kg", system.mass.sum()},
                {"substeps_per_second", level.substeps_per_second},
                {"stable_timestep_s", std::isfinite(stable) ? Json(stable) : Json(nullptr)}};
-  for (const Quantity& quantity : QuantitiesOf(system)) {
-    const Range range = RangeOf(*quantity.values);
-    json[quantity.key] = {{"min", range.least}, {"median", range.median}, {"max", range.most}};
+  for (const LevelList& list : kLevelLists) {
+    const Range range = RangeOf(list.In(system));
+    json[KeyOf(list.name, list.unit)] = {
+        {"min", range.least}, {"median", range.median}, {"max", range.most}};
   }
-  json["drag_1_s"] = system.drag;
-  json["contact"] = {{"restitution", system.contact.restitution},
-                     {"friction", system.contact.friction},
-                     {"cone", ConeName(system.contact.cone)},
-                     {"object_restitution", system.contact.object_restitution},
-                     {"object_friction", system.contact.object_friction},
-                     {"collision_distance_m", system.contact.collision_distance}};
+  Json contact;
+  for (const LevelScalar& scalar : kLevelScalars) {
+    const bool of_contact = scalar.role != NumberRole::kSprings;
+    if (scalar.role == NumberRole::kObject) contact["cone"] = ConeName(system.contact.cone);
+    (of_contact ? contact : json)[KeyOf(scalar.name, scalar.unit)] = scalar.In(system);
+  }
+  json["contact"] = contact;
   json["effects"] = Json::parse(EffectsToJson(system.effects));
   return json;
 }

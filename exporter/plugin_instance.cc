@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "twin/attribute_names.h"
 #include "twin/cone_name.h"
 #include "twin/effects/effect_json.h"
+#include "twin/level_numbers.h"
 
 namespace physpring {
 namespace {
@@ -31,32 +33,40 @@ std::string SpringEnds(const SpringMassSystem& system, bool nodes_only) {
   return Numbers(ends);
 }
 
+void AddScalars(const SpringMassSystem& system, NumberRole role, XmlElement* instance) {
+  for (const LevelScalar& number : kLevelScalars) {
+    if (number.role == role) AddConfig(instance, number.name, Number(number.In(system)));
+  }
+}
+
+void AddLists(const SpringMassSystem& system, NumberRole role, XmlElement* instance) {
+  for (const LevelList& list : kLevelLists) {
+    if (list.role == role) AddConfig(instance, list.name, Compact(list.In(system)));
+  }
+}
+
 void AddSpringKeys(const LevelPlan& plan, XmlElement* instance) {
   const SpringMassSystem& system = plan.system();
-  AddConfig(instance, "nodes", std::to_string(system.node_count()));
-  AddConfig(instance, "controllers", std::to_string(system.controllers));
-  AddConfig(instance, "springs", SpringEnds(system, false));
-  AddConfig(instance, "stiffness", Compact(system.stiffness));
-  AddConfig(instance, "rest_length", Compact(system.rest_length));
-  AddConfig(instance, "dashpot", Compact(system.dashpot));
-  AddConfig(instance, "drag", Number(system.drag));
-  AddConfig(instance, "substep", Number(plan.substep));
+  AddConfig(instance, kAttrNodes, std::to_string(system.node_count()));
+  AddConfig(instance, kAttrControllers, std::to_string(system.controllers));
+  AddConfig(instance, kAttrSprings, SpringEnds(system, false));
+  AddLists(system, NumberRole::kSprings, instance);
+  AddScalars(system, NumberRole::kSprings, instance);
+  AddConfig(instance, kAttrSubstep, Number(plan.substep));
   if (!plan.plugin_effects.empty()) {
-    AddConfig(instance, "effects", EffectsToJson(plan.plugin_effects));
+    AddConfig(instance, kAttrEffects, EffectsToJson(plan.plugin_effects));
   }
-  if (system.order.size() > 0) AddConfig(instance, "order", Numbers(system.order));
-  AddConfig(instance, "controller_velocity", plan.twin->controller_velocity ? "1" : "0");
+  if (system.order.size() > 0) AddConfig(instance, kAttrOrder, Numbers(system.order));
+  AddConfig(instance, kAttrControllerVelocity, plan.twin->controller_velocity ? "1" : "0");
 }
 
 void AddContactKeys(const LevelPlan& plan, XmlElement* instance) {
-  const ContactCoefficients& contact = plan.system().contact;
-  AddConfig(instance, "restitution", Number(contact.restitution));
-  AddConfig(instance, "friction", Number(contact.friction));
-  AddConfig(instance, "object_restitution", Number(contact.object_restitution));
-  AddConfig(instance, "object_friction", Number(contact.object_friction));
-  if (contact.cone == FrictionCone::kPyramidal) AddConfig(instance, "cone", kPyramidal);
-  AddConfig(instance, "collision_distance", Number(contact.collision_distance));
-  AddConfig(instance, "contact_radius", Compact(plan.system().contact_radius));
+  const SpringMassSystem& system = plan.system();
+  AddScalars(system, NumberRole::kSurface, instance);
+  AddScalars(system, NumberRole::kObject, instance);
+  if (system.contact.cone == FrictionCone::kPyramidal) AddConfig(instance, kAttrCone, kPyramidal);
+  AddScalars(system, NumberRole::kReach, instance);
+  AddLists(system, NumberRole::kReach, instance);
 }
 
 }  // namespace
@@ -72,7 +82,7 @@ void AddPluginInstance(const LevelPlan& plan, XmlElement* mujoco) {
     AddSpringKeys(plan, instance);
   } else if (plan.system().contact.collision_distance > 0) {
     // particles that a spring joins never collide
-    AddConfig(instance, "springs", SpringEnds(plan.system(), true));
+    AddConfig(instance, kAttrSprings, SpringEnds(plan.system(), true));
   }
   if (plan.contact == ContactKind::kPlugin) AddContactKeys(plan, instance);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "plugin/euler_step.h"
+#include "twin/attribute_names.h"
 
 namespace physpring {
 
@@ -26,15 +27,9 @@ LevelContactModel::LevelContactModel(const mjModel* model, int instance)
       particles(level.system, {Vector::Zero(), {}}) {}
 
 const std::vector<const char*>& LevelContact::AttributeNames() {
-  static const std::vector<const char*> names = {"nodes",
-                                                 "springs",
-                                                 "restitution",
-                                                 "friction",
-                                                 "object_restitution",
-                                                 "object_friction",
-                                                 "collision_distance",
-                                                 "cone",
-                                                 "contact_radius"};
+  static const std::vector<const char*> names =
+      WithLevelNumbers({kAttrNodes, kAttrSprings, kAttrCone},
+                       {NumberRole::kSurface, NumberRole::kObject, NumberRole::kReach});
   return names;
 }
 

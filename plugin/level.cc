@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
+#include "twin/attribute_names.h"
 #include "twin/cone_name.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
+#include "twin/level_numbers.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -100,14 +102,12 @@ void CheckCount(const Attributes& attributes, const char* name, std::size_t foun
 
 void ReadContact(const Attributes& attributes, Level* level) {
   SpringMassSystem& system = level->system;
-  ContactCoefficients& contact = system.contact;
-  level->has_surface = attributes.Has("restitution") || attributes.Has("friction");
-  contact.restitution = attributes.Number("restitution", contact.restitution);
-  contact.friction = attributes.Number("friction", contact.friction);
-  contact.object_restitution = attributes.Number("object_restitution", contact.object_restitution);
-  contact.object_friction = attributes.Number("object_friction", contact.object_friction);
-  contact.collision_distance = attributes.Number("collision_distance", contact.collision_distance);
-  contact.cone = ConeOf(attributes.Word("cone", {kElliptic, kPyramidal}));
+  for (const LevelScalar& number : kLevelScalars) {
+    if (number.role == NumberRole::kSprings) continue;
+    if (number.role == NumberRole::kSurface) level->has_surface |= attributes.Has(number.name);
+    number.In(system) = attributes.Number(number.name, number.In(system));
+  }
+  system.contact.cone = ConeOf(attributes.Word(kAttrCone, {kElliptic, kPyramidal}));
   level->has_contact_radius = attributes.Has("contact_radius");
   system.contact_radius.setZero(system.node_count());
   if (level->has_contact_radius) {
@@ -116,12 +116,12 @@ void ReadContact(const Attributes& attributes, Level* level) {
 }
 
 void ReadEffects(const Attributes& attributes, SpringMassSystem* system) {
-  if (attributes.Has("order")) {
-    system->order = attributes.Each("order", system->position.cols());
+  if (attributes.Has(kAttrOrder)) {
+    system->order = attributes.Each(kAttrOrder, system->position.cols());
   }
-  if (attributes.Has("effects")) {
-    system->effects =
-        EffectsFromJson(attributes.Text("effects"), attributes.where() + ": attribute 'effects'");
+  if (attributes.Has(kAttrEffects)) {
+    system->effects = EffectsFromJson(attributes.Text(kAttrEffects),
+                                      attributes.where() + ": attribute 'effects'");
   }
 }
 
@@ -135,6 +135,17 @@ void CheckEffects(const Attributes& attributes, const SpringMassSystem& system) 
 }
 
 }  // namespace
+
+std::vector<const char*> WithLevelNumbers(std::vector<const char*> names,
+                                          const std::vector<NumberRole>& roles) {
+  const auto add = [&](const auto& number) {
+    if (std::find(roles.begin(), roles.end(), number.role) == roles.end()) return;
+    names.push_back(number.name);
+  };
+  for (const LevelList& list : kLevelLists) add(list);
+  for (const LevelScalar& number : kLevelScalars) add(number);
+  return names;
+}
 
 LevelBodies FindBodies(const mjModel* model, int instance) {
   LevelBodies bodies;
@@ -159,7 +170,7 @@ Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes
   level.bodies = FindBodies(model, instance);
   CheckParent(model, instance, level.bodies, where);
   const std::vector<int>& nodes = level.bodies.nodes;
-  CheckCount(attributes, "nodes", nodes.size());
+  CheckCount(attributes, kAttrNodes, nodes.size());
 
   SpringMassSystem& system = level.system;
   system.controllers = static_cast<int>(level.bodies.controllers.size());
@@ -199,7 +210,7 @@ void CheckOptions(const mjModel* model, const Level& level, const std::string& w
 
 void ReadJoinedPairs(const Attributes& attributes, Level* level) {
   SpringMassSystem& system = level->system;
-  const std::vector<int> ends = attributes.Integers("springs");
+  const std::vector<int> ends = attributes.Integers(kAttrSprings);
   if (ends.size() % 2 != 0) {
     throw Error(fmt::format("{}: attribute 'springs' has {} numbers, expected two for each spring",
                             attributes.where(), ends.size()));
@@ -213,18 +224,21 @@ void ReadJoinedPairs(const Attributes& attributes, Level* level) {
 }
 
 void ReadSprings(const Attributes& attributes, Level* level) {
-  CheckCount(attributes, "controllers", level->bodies.controllers.size());
-  if (!attributes.Has("springs")) {
+  CheckCount(attributes, kAttrControllers, level->bodies.controllers.size());
+  if (!attributes.Has(kAttrSprings)) {
     throw Error(fmt::format("{}: attribute 'springs' is missing, expected two numbers for each",
                             attributes.where()));
   }
   ReadJoinedPairs(attributes, level);
   SpringMassSystem& system = level->system;
-  const int count = system.spring_count();
-  system.stiffness = attributes.Each("stiffness", count);
-  system.rest_length = attributes.Each("rest_length", count);
-  system.dashpot = attributes.Each("dashpot", count);
-  system.drag = attributes.Number("drag", 0);
+  for (const LevelList& list : kLevelLists) {
+    if (list.role != NumberRole::kSprings) continue;
+    list.In(system) = attributes.Each(list.name, list.SizeIn(system));
+  }
+  for (const LevelScalar& number : kLevelScalars) {
+    if (number.role != NumberRole::kSprings) continue;
+    number.In(system) = attributes.Number(number.name, number.In(system));
+  }
   ReadEffects(attributes, &system);
   system.Validate(attributes.where());
   CheckEffects(attributes, system);

@@ -14,9 +14,14 @@
 #include <vector>
 
 #include "plugin/attributes.h"
+#include "twin/level_numbers.h"
 #include "twin/spring_mass_system.h"
 
 namespace physpring {
+
+// `names` and those of the level's numbers of these roles: the attributes of a plugin.
+std::vector<const char*> WithLevelNumbers(std::vector<const char*> names,
+                                          const std::vector<NumberRole>& roles);
 
 struct LevelBodies {
   int parent = 0;

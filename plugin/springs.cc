@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/attribute_names.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -27,7 +28,7 @@ constexpr double kMostSubsteps = 1e6;  // in a step
 
 double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes) {
   const double stable = ComputeStabilityBound(system).timestep;
-  const double substep = attributes.Number("substep", kSafety * stable);
+  const double substep = attributes.Number(kAttrSubstep, kSafety * stable);
   if (substep > 0 && substep <= stable) return substep;
   throw Error(
       fmt::format("{}: attribute 'substep' is {} s, expected more than 0 and at most {:.3g}, "
@@ -35,10 +36,9 @@ double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes)
                   attributes.where(), substep, stable));
 }
 
-std::unique_ptr<const EffectStep<double>> MakeEffects(const SpringMassSystem& system,
-                                                      const SpringBlocks<double>& springs) {
-  if (system.effects.empty()) return nullptr;
-  return std::make_unique<const EffectStep<double>>(system, Vector::Zero(), springs.size());
+// Numbers of a state without internal variables.
+int PlainStateSize(const LevelBodies& bodies) {
+  return 3 * static_cast<int>(bodies.nodes.size() + bodies.controllers.size()) + 1;
 }
 
 // Between the particles only: MuJoCo finds the rest.
@@ -48,41 +48,24 @@ Environment Nothing() { return {Vector::Zero(), {}}; }
 
 SpringsModel::SpringsModel(const mjModel* model, int instance)
     : level(ReadLevelWithSprings(model, instance, Attributes(model, instance))),
-      controller_velocity(Attributes(model, instance).Flag("controller_velocity", true)),
+      controller_velocity(Attributes(model, instance).Flag(kAttrControllerVelocity, true)),
       substep(ReadSubstep(level.system, Attributes(model, instance))),
-      springs(level.system),
-      particles(level.system, Nothing()),
-      effects(MakeEffects(level.system, springs)) {}
+      step(level.system, Nothing(), BestKernel<double>()) {}
 
 const std::vector<const char*>& Springs::AttributeNames() {
-  static const std::vector<const char*> names = {"nodes",
-                                                 "controllers",
-                                                 "springs",
-                                                 "stiffness",
-                                                 "rest_length",
-                                                 "dashpot",
-                                                 "order",
-                                                 "effects",
-                                                 "drag",
-                                                 "substep",
-                                                 "controller_velocity",
-                                                 "restitution",
-                                                 "friction",
-                                                 "object_restitution",
-                                                 "object_friction",
-                                                 "collision_distance",
-                                                 "cone",
-                                                 "contact_radius"};
+  static const std::vector<const char*> names = WithLevelNumbers(
+      {kAttrNodes, kAttrControllers, kAttrSprings, kAttrOrder, kAttrEffects, kAttrSubstep,
+       kAttrControllerVelocity, kAttrCone},
+      {NumberRole::kSprings, NumberRole::kSurface, NumberRole::kObject, NumberRole::kReach});
   return names;
 }
 
 Springs::Springs(const mjModel* model, int instance)
     : springs_(std::make_shared<SpringsModel>(model, instance)),
       surfaces_(model, instance, springs_->level),
-      h_over_mass_(nodes()),
-      state_(first_internal() + (springs_->effects ? springs_->effects->extra_records() : 0)),
+      state_(springs_->step.state_size()),
       next_(state_.size()),
-      force_(state_.size()),
+      buffers_(springs_->step.springs()),
       ways_(springs_->level.bodies.controllers.size()),
       controller_velocity_(3, static_cast<Eigen::Index>(ways_.size())),
       lag_(3 * static_cast<std::size_t>(nodes())) {
@@ -94,34 +77,20 @@ Springs::Springs(const mjModel* model, int instance)
                     "step of {} s",
                     where, springs_->substep, model->opt.timestep));
   }
-  const std::size_t size =
-      3 * (static_cast<std::size_t>(nodes()) + ways_.size()) + 1 + internal_size();
-  if (static_cast<std::size_t>(model->plugin_statenum[instance]) == size) return;
+  const int size = PlainStateSize(springs_->level.bodies) + springs_->internal_size();
+  if (model->plugin_statenum[instance] == size) return;
   throw Error(fmt::format("{}: the model was compiled with {} numbers of state, expected {}", where,
                           model->plugin_statenum[instance], size));
 }
 
 int Springs::StateSize(const mjModel* model, int instance) {
-  const LevelBodies bodies = FindBodies(model, instance);
-  const int size = 3 * static_cast<int>(bodies.nodes.size() + bodies.controllers.size()) + 1;
-  const Attributes attributes(model, instance);
-  if (!attributes.Has("effects")) return size;
+  const int size = PlainStateSize(FindBodies(model, instance));
+  if (!Attributes(model, instance).Has(kAttrEffects)) return size;
   try {
-    const Level level = ReadLevelWithSprings(model, instance, attributes);
-    const auto effects = MakeEffects(level.system, SpringBlocks<double>(level.system));
-    return size + (effects ? kRecordSize * effects->extra_records() : 0);
+    return size + SpringsModel(model, instance).internal_size();
   } catch (const Error&) {
     return size;  // refused, with a message, when an instance is made
   }
-}
-
-void Springs::SetTimestep(double h) {
-  const SpringMassSystem& system = springs_->level.system;
-  view_.nodes = nodes();
-  view_.h = h;
-  view_.decay = std::exp(-h * system.drag);
-  for (int i = 0; i < nodes(); ++i) h_over_mass_[i] = h * (1 / system.mass[i]);
-  view_.h_over_mass = h_over_mass_.data();
 }
 
 void Springs::ReadNodes(const EulerStep& step, const mjData* data, const double* lag) {
@@ -158,7 +127,8 @@ void Springs::ReadControllers(const mjModel* model, const mjData* data, double t
 }
 
 void Springs::ReadInternal(const double* internal) {
-  std::copy(internal, internal + internal_size(), Internal(&state_, first_internal()));
+  std::copy(internal, internal + springs_->internal_size(),
+            Internal(&state_, springs_->step.first_internal()));
 }
 
 bool Springs::IsFinite() const {
@@ -182,22 +152,13 @@ void Springs::PlaceControllers(double elapsed, double h) {
 }
 
 void Springs::Substep(double time, double elapsed, double h, const Contact<double>::Pairs& pairs) {
-  const Kernel<double>& kernel = BestKernel<double>();
+  static const std::vector<Geom> kNoGeoms;  // MuJoCo finds their contacts
   PlaceControllers(elapsed, h);
-  std::fill(force_.begin(), force_.end(), NodeForce<double>{});
-  const SpringView<double> springs = springs_->springs.View();
-  if (springs_->effects) {
-    springs_->effects->AddForces({kernel, springs, time + elapsed, h, state_, controller_velocity_},
-                                 &next_, &force_, &effect_buffers_);
-  } else {
-    kernel.add_spring_forces(springs, state_.data(), force_.data());
-  }
-  kernel.update_velocities(view_, state_.data(), force_.data(), next_.data());
-  if (!pairs.empty()) springs_->particles.Apply(state_, pairs, {}, elapsed, h, &next_, &impacts_);
-  surfaces_.Apply(state_, h, &next_);
-  kernel.update_positions(view_, state_.data(), next_.data());
+  springs_->step.Advance(
+      {node_step_.View(), time, elapsed, h, controller_velocity_, pairs, kNoGeoms}, state_, &next_,
+      &impacts_, &buffers_, [&](NodeStates<double>* next) { surfaces_.Apply(state_, h, next); });
   for (std::size_t c = 0; c < ways_.size(); ++c) {
-    ways_[c].impulse += h * Eigen::Map<const Vector>(force_[nodes() + c].f);
+    ways_[c].impulse += h * Eigen::Map<const Vector>(buffers_.force[nodes() + c].f);
   }
   std::swap(state_, next_);
 }
@@ -208,8 +169,7 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   const double wanted = std::ceil(time / springs_->substep - 1e-9);
   const int substeps = static_cast<int>(std::clamp(wanted, 1.0, kMostSubsteps));
   const double h = time / substeps;
-  SetTimestep(h);
-  for (int j = 0; j < 3; ++j) view_.kick.f[j] = h * step.gravity()[j];
+  node_step_.Set(springs_->level.system, h, step.gravity());
 
   const double* plugin_state = data->plugin_state + model->plugin_stateadr[instance];
   ReadNodes(step, data, plugin_state);
@@ -217,7 +177,7 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   ReadInternal(plugin_state + 3 * (nodes() + ways_.size()) + 1);
   if (!IsFinite()) return;  // MuJoCo warns
   surfaces_.Collect(model, data, state_);
-  const Contact<double>::Pairs pairs = springs_->particles.FindPairs(state_, time);
+  const Contact<double>::Pairs pairs = springs_->step.contact().FindPairs(state_, time);
   for (int i = 0; i < substeps; ++i) Substep(data->time, i * h, h, pairs);
   WriteForces(model, step, substeps, data);
 }
@@ -255,8 +215,8 @@ void Springs::Advance(const mjModel* model, mjData* data, int instance) {
     before = std::copy(data->xpos + 3 * body, data->xpos + 3 * body + 3, before);
   }
   *before = 1;
-  const double* internal = Internal(state_, first_internal());
-  if (is_computed_) std::copy(internal, internal + internal_size(), before + 1);
+  const double* internal = Internal(state_, springs_->step.first_internal());
+  if (is_computed_) std::copy(internal, internal + springs_->internal_size(), before + 1);
   is_computed_ = false;
 }
 

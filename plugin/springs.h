@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plugin physpring.springs: springs, dashpots, drag, effects and contacts of one level,
-// integrated with sub-steps of its own inside MuJoCo's step, by the kernel of the trainer
-// (twin/kernel.h).
+// integrated with sub-steps of its own inside MuJoCo's step: those of the trainer
+// (twin/level_step.h).
 //
 // A step of length H has n sub-steps of h = H / n. MuJoCo knows one velocity a node and step: the
 // force is the one that gives the node the mean velocity of the sub-steps, v_mean, so that it lands
@@ -22,10 +22,7 @@
 #include "plugin/euler_step.h"
 #include "plugin/level.h"
 #include "plugin/surfaces.h"
-#include "twin/contact.h"
-#include "twin/effects/effect_step.h"
-#include "twin/kernel_choice.h"
-#include "twin/spring_blocks.h"
+#include "twin/level_step.h"
 
 namespace physpring {
 
@@ -33,13 +30,14 @@ namespace physpring {
 struct SpringsModel {
   Level level;
   bool controller_velocity;
-  double substep;  // s, the longest
-  SpringBlocks<double> springs;
-  Contact<double> particles;  // contacts of the level's nodes with each other
-  std::unique_ptr<const EffectStep<double>> effects;  // null: none
+  double substep;          // s, the longest
+  LevelStep<double> step;  // contacts are those of the level's nodes with each other
 
   // Throws Error, one line that names instance, attribute and value.
   SpringsModel(const mjModel* model, int instance);
+
+  // How many numbers are the effects' internal variables.
+  int internal_size() const { return kRecordSize * (step.state_size() - step.first_internal()); }
 };
 
 class Springs {
@@ -64,11 +62,7 @@ class Springs {
     bool is_mocap;
   };
 
-  // The records of a state that hold the effects' internal variables, and how many these are.
-  int first_internal() const { return springs_->springs.spare_node + 1; }
-  std::size_t internal_size() const { return kRecordSize * (state_.size() - first_internal()); }
   int nodes() const { return springs_->level.system.node_count(); }
-  void SetTimestep(double h);
   void ReadNodes(const EulerStep& step, const mjData* data, const double* lag);
   void ReadControllers(const mjModel* model, const mjData* data, double time,
                        const double* plugin_state);
@@ -82,12 +76,10 @@ class Springs {
   Surfaces surfaces_;
 
   // Buffers of a step. `lag_` is for the Advance of the same step.
-  NodeView<double> view_{};
-  std::vector<double> h_over_mass_;
+  NodeStep<double> node_step_;
   NodeStates<double> state_, next_;
-  NodeForces<double> force_;
+  LevelBuffers<double> buffers_;
   Contact<double>::Impacts impacts_;
-  EffectBuffers<double> effect_buffers_;
   std::vector<Way> ways_;
   Points controller_velocity_;  // 3 x controllers, m/s
   std::vector<double> lag_;

@@ -39,10 +39,10 @@ int InstanceOfNode(const mjModel* model, int body) {
 }  // namespace
 
 Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
-    : instance_(instance), node_of_body_(model->nbody, -1), level_(&level) {
-  const ContactCoefficients& c = level.system.contact;
-  laws_.surface = {c.restitution, c.friction, c.cone};
-  laws_.object = {c.object_restitution, c.object_friction};
+    : instance_(instance),
+      node_of_body_(model->nbody, -1),
+      level_(&level),
+      laws_(LawsOf<double>(level.system.contact)) {
   const std::vector<int>& nodes = level.bodies.nodes;
   for (int body = 1; body < model->nbody; ++body) {
     const auto node = std::find(nodes.begin(), nodes.end(), model->body_weldid[body]);

@@ -52,10 +52,8 @@ Contact<Real>::Contact(const SpringMassSystem& system, const Environment& enviro
 
 template <class Real>
 void Contact<Real>::SetParameters(const SpringMassSystem& system) {
-  const ContactCoefficients& c = system.contact;
-  laws_.surface = {static_cast<Real>(c.restitution), static_cast<Real>(c.friction), c.cone};
-  laws_.object = {static_cast<Real>(c.object_restitution), static_cast<Real>(c.object_friction)};
-  assert(distance_ == static_cast<Real>(c.collision_distance));
+  laws_ = LawsOf<Real>(system.contact);
+  assert(distance_ == static_cast<Real>(system.contact.collision_distance));
   radius_.resize(nodes_);
   mass_.resize(nodes_);
   for (int i = 0; i < nodes_; ++i) {

@@ -20,7 +20,22 @@ template <class Real>
 struct ContactLaws {
   ContactPair<Real> surface;  // ground and geoms
   ContactPair<Real> object;   // between particles
+
+  // Adds derivatives with respect to the coefficients.
+  template <class Other>
+  ContactLaws& operator+=(const ContactLaws<Other>& bar) {
+    surface += bar.surface;
+    object += bar.object;
+    return *this;
+  }
 };
+
+// The laws with the coefficients of a level.
+template <class Real>
+ContactLaws<Real> LawsOf(const ContactCoefficients& c) {
+  return {{static_cast<Real>(c.restitution), static_cast<Real>(c.friction), c.cone},
+          {static_cast<Real>(c.object_restitution), static_cast<Real>(c.object_friction)}};
+}
 
 // Derivatives that the contacts of a sub-step add to, besides those with respect to the state.
 template <class Real>

@@ -24,6 +24,14 @@ struct ContactPair {
   Real restitution = 0;
   Real friction = 0;
   FrictionCone cone = FrictionCone::kElliptic;
+
+  // Adds derivatives with respect to the coefficients.
+  template <class Other>
+  ContactPair& operator+=(const ContactPair<Other>& bar) {
+    restitution += static_cast<Real>(bar.restitution);
+    friction += static_cast<Real>(bar.friction);
+    return *this;
+  }
 };
 
 // Relative velocity after the impact. Needs |n| = 1 and u . n < 0.

@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The simulator of one spring-mass system, frame by frame, and its adjoint. A frame has `substeps`
-// sub-steps of h = frame_time / substeps; each is semi-implicit Euler:
-//   controllers to their place at the end of the sub-step (linear within the frame)
-//   F   springs and dashpots at (x, v)                                 spring_force.h
-//       and the system's effects, if it has any                        effects/effect.h
-//   v*  = (v + h (F / m + g)) exp(-h drag)                             node_update.h
-//   v'  = contacts(v*)                                                 contact.h
-//   x'  = x + h v'                                                     node_update.h
+// sub-steps of h = frame_time / substeps. In each, the controllers go to their place at its end
+// (linear within the frame), and the level makes its step (level_step.h).
 // The adjoint of a frame recomputes the frame from its first state (the checkpoint) and goes
 // through its sub-steps backwards; memory is one frame, whatever the length of the rollout.
 #ifndef PHYSPRING_TWIN_SIMULATOR_H_
 #define PHYSPRING_TWIN_SIMULATOR_H_
 
-#include <memory>
 #include <vector>
 
-#include "twin/contact.h"
-#include "twin/effects/effect_step.h"
 #include "twin/environment.h"
 #include "twin/kernel_choice.h"
+#include "twin/level_step.h"
 #include "twin/node_state.h"
-#include "twin/spring_blocks.h"
 #include "twin/spring_mass_system.h"
 #include "twin/system_gradient.h"
 
@@ -79,62 +71,36 @@ class Simulator {
   int node_count() const { return nodes_; }
 
  private:
-  void SetControllerVelocity(const FrameInput& input, Workspace* workspace) const;
+  LevelSubstep<Real> NowOf(const FrameInput& input, int substep, const Workspace& workspace) const;
+  void StartFrame(const FrameInput& input, const State& state, Workspace* workspace) const;
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
-  void Substep(const FrameInput& input, const typename Contact<Real>::Pairs& pairs, int substep,
-               State* state, State* next, typename Contact<Real>::Impacts* impacts,
-               Workspace* workspace) const;
+  void Substep(const FrameInput& input, int substep, State* state, State* next,
+               typename LevelStep<Real>::Impacts* impacts, Workspace* workspace) const;
   void SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const;
-  void AddGradients(const Workspace& workspace, SystemGradient* gradient) const;
 
-  void SetParameters(const SpringMassSystem& system, const Eigen::Vector3d& gravity);
-  int state_size() const {
-    return springs_.spare_node + 1 + (effects_ ? effects_->extra_records() : 0);
-  }
-  EffectSubstep<Real> NowOf(double start, int substep, const State& state,
-                            const Points& controller_velocity) const {
-    const double h = options_.frame_time / options_.substeps;
-    return {*kernel_, springs_.View(), start + substep * h, h, state, controller_velocity};
-  }
-
-  NodeView<Real> Nodes() const { return {nodes_, h_over_mass_.data(), h_, decay_, kick_}; }
-
-  NodeForce<Real> kick_;  // h g
-  const Kernel<Real>* kernel_;
   int nodes_, controllers_;
   SimulationOptions options_;
-  Real h_;
-  Real decay_ = 1;  // exp(-h drag)
-  std::vector<Real> h_over_mass_;
-  SpringBlocks<Real> springs_;
-  Contact<Real> contact_;
-  Eigen::Vector3d gravity_;                          // of the environment, m/s^2
-  std::shared_ptr<const EffectStep<Real>> effects_;  // null for a system without effects
+  double h_;  // s
+  LevelStep<Real> step_;
+  NodeStep<Real> node_step_;
 };
 
 template <class Real>
 class Simulator<Real>::Workspace {
  public:
-  explicit Workspace(const Simulator& simulator);
+  explicit Workspace(const Simulator& simulator)
+      : next(simulator.step_.state_size()), buffers(simulator.step_.springs()) {}
 
  private:
   friend class Simulator;
-  void ClearGradients(int nodes);
 
   State next;
-  NodeForces<Real> force;
   std::vector<State> states;  // at the start of each sub-step of a frame, and at its end
-  std::vector<typename Contact<Real>::Impacts> impacts;  // of each sub-step
-
-  // Sums over the sub-steps of a frame.
-  SpringBlockGradient<Real> spring_gradient;
-  NodeForces<Real> mass_gradient;  // this, drag and gravity: see node_update.h
-  NodeForce<Real> drag_gradient, gravity_gradient;
-  ContactGradient<Real> contact_gradient;
-
-  EffectBuffers<Real> effects;
-  Points controller_velocity;  // 3 x controllers, m/s, in the frame; only effects need it
-  FrameInput input;            // of the frame that was recorded last; only effects need it
+  std::vector<typename LevelStep<Real>::Impacts> impacts;  // of each sub-step
+  LevelBuffers<Real> buffers;
+  typename Contact<Real>::Pairs pairs;  // of the frame
+  Points controller_velocity;           // 3 x controllers, m/s, in the frame
+  FrameInput input;                     // of the frame that was recorded last
 };
 
 }  // namespace physpring

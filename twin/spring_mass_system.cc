@@ -5,25 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "twin/effects/registry.h"
 #include "twin/error.h"
+#include "twin/level_numbers.h"
 
 namespace physpring {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSmallestPositive = std::numeric_limits<double>::min();
 
 bool IsInRange(double value, double least, double most) {
   return std::isfinite(value) && value >= least && value <= most;
 }
 
 [[noreturn]] void FailRange(const std::string& what, double value, double least, double most) {
-  const std::string range = most < kInfinity             ? fmt::format("{} to {}", least, most)
-                            : least >= kSmallestPositive ? "more than 0"
-                                                         : "0 or more";
+  const std::string range = most < kAnyNumber        ? fmt::format("{} to {}", least, most)
+                            : least >= kMoreThanZero ? "more than 0"
+                                                     : "0 or more";
   throw Error(fmt::format("{} is {}, expected {}", what, value, range));
 }
 
@@ -38,8 +35,8 @@ void ExpectEach(const std::string& what, const Eigen::VectorXd& values, Eigen::I
     throw Error(fmt::format("{} has {} values, expected {}", what, values.size(), size));
   }
   for (Eigen::Index i = 0; i < size; ++i) {
-    if (IsInRange(values[i], least, kInfinity)) continue;
-    FailRange(fmt::format("{}[{}]", what, i), values[i], least, kInfinity);
+    if (IsInRange(values[i], least, kAnyNumber)) continue;
+    FailRange(fmt::format("{}[{}]", what, i), values[i], least, kAnyNumber);
   }
 }
 
@@ -77,14 +74,15 @@ void ValidateSprings(const SpringMassSystem& system, const std::string& where) {
                           where, (*twice)[0], (*twice)[1]));
 }
 
-void ValidateContact(const SpringMassSystem& system, const std::string& where) {
-  const ContactCoefficients& contact = system.contact;
-  ExpectInRange(where + ": restitution", contact.restitution, 0, 1);
-  ExpectInRange(where + ": friction", contact.friction, 0, 2);
-  ExpectInRange(where + ": object_restitution", contact.object_restitution, 0, 1);
-  ExpectInRange(where + ": object_friction", contact.object_friction, 0, 2);
-  ExpectInRange(where + ": collision_distance", contact.collision_distance, 0, kInfinity);
-  ExpectEach(where + ": contact_radius", system.contact_radius, system.node_count(), 0);
+// Each number of the level has the shape and the range that level_numbers.h gives it.
+void ValidateNumbers(const SpringMassSystem& system, const std::string& where) {
+  for (const LevelList& list : kLevelLists) {
+    ExpectEach(fmt::format("{}: {}", where, list.name), list.In(system), list.SizeIn(system),
+               list.least);
+  }
+  for (const LevelScalar& number : kLevelScalars) {
+    ExpectInRange(fmt::format("{}: {}", where, number.name), number.In(system), 0, number.most);
+  }
 }
 
 }  // namespace
@@ -102,12 +100,7 @@ std::vector<int> SpringMassSystem::UnjoinedControllers() const {
 void SpringMassSystem::Validate(const std::string& where) const {
   ValidatePositions(*this, where);
   ValidateSprings(*this, where);
-  ExpectEach(where + ": mass", mass, node_count(), kSmallestPositive);
-  ExpectEach(where + ": stiffness", stiffness, spring_count(), 0);
-  ExpectEach(where + ": rest_length", rest_length, spring_count(), kSmallestPositive);
-  ExpectEach(where + ": dashpot", dashpot, spring_count(), 0);
-  ExpectInRange(where + ": drag", drag, 0, kInfinity);
-  ValidateContact(*this, where);
+  ValidateNumbers(*this, where);
   for (const EffectValues& effect : effects) ValidateEffect(effect, where);
 }
 

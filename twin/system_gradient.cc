@@ -20,10 +20,7 @@ SystemGradient& SystemGradient::operator+=(const SystemGradient& other) {
   mass += other.mass;
   drag += other.drag;
   gravity += other.gravity;
-  contact.surface.restitution += other.contact.surface.restitution;
-  contact.surface.friction += other.contact.surface.friction;
-  contact.object.restitution += other.contact.object.restitution;
-  contact.object.friction += other.contact.object.friction;
+  contact += other.contact;
   for (std::size_t i = 0; i < effects.size(); ++i) effects[i] += other.effects[i];
   return *this;
 }

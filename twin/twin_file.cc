@@ -12,6 +12,7 @@
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/json_fields.h"
+#include "twin/level_numbers.h"
 #include "twin/npz.h"
 #include "twin/npz_fields.h"
 #include "twin/quote.h"
@@ -25,27 +26,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "physpring twin";
 constexpr int kVersion = 1;
 constexpr const char* kStatePrefix = "train/";
-
-// Visits every number of a level that is a scalar, under its name in the file.
-template <typename Level, typename Visitor>
-void VisitScalars(Level& level, Visitor visit) {
-  visit("drag", level.system.drag);
-  visit("restitution", level.system.contact.restitution);
-  visit("friction", level.system.contact.friction);
-  visit("object_restitution", level.system.contact.object_restitution);
-  visit("object_friction", level.system.contact.object_friction);
-  visit("collision_distance", level.system.contact.collision_distance);
-}
-
-// Visits every list of numbers of a level, under its name in the file and what it has one of each.
-template <typename Level, typename Visitor>
-void VisitVectors(Level& level, Visitor visit) {
-  visit("mass", "nodes", level.system.mass);
-  visit("stiffness", "springs", level.system.stiffness);
-  visit("rest_length", "springs", level.system.rest_length);
-  visit("dashpot", "springs", level.system.dashpot);
-  visit("contact_radius", "nodes", level.system.contact_radius);
-}
 
 std::string LevelPrefix(std::size_t level) { return fmt::format("level{}/", level); }
 
@@ -71,26 +51,32 @@ void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) 
   if (system.contact.cone == FrictionCone::kPyramidal) {  // absent where it is elliptic
     arrays[prefix + "cone"] = NpzArray::Text(kPyramidal);
   }
-  VisitScalars(level, [&](const char* name, const double& value) {
-    arrays[prefix + name] = NpzArray::Doubles({}, &value);
-  });
-  VisitVectors(level, [&](const char* name, const char*, const Eigen::VectorXd& values) {
-    arrays[prefix + name] = StoreVector(values);
-  });
+  for (const LevelScalar& number : kLevelScalars) {
+    const double value = number.In(system);
+    arrays[prefix + number.name] = NpzArray::Doubles({}, &value);
+  }
+  for (const LevelList& list : kLevelLists) {
+    arrays[prefix + list.name] = StoreVector(list.In(system));
+  }
+}
+
+// Adds the units of the level's numbers, of contacts or of all else.
+void AddUnits(bool contacts, Json* units) {
+  const auto add = [&](const auto& number) {
+    const bool of_contacts =
+        number.role != NumberRole::kBody && number.role != NumberRole::kSprings;
+    if (of_contacts == contacts && *number.unit != '\0') (*units)[number.name] = number.unit;
+  };
+  for (const LevelList& list : kLevelLists) add(list);
+  for (const LevelScalar& number : kLevelScalars) add(number);
 }
 
 Json Units() {
-  return {{"position", "m"},
-          {"mass", "kg"},
-          {"stiffness", "N/m"},
-          {"rest_length", "m"},
-          {"dashpot", "N s/m"},
-          {"drag", "1/s"},
-          {"order", "m"},
-          {"fps", "1/s"},
-          {"gravity", "m/s^2"},
-          {"contact_radius", "m"},
-          {"collision_distance", "m"}};
+  Json units = {{"position", "m"}};
+  AddUnits(false, &units);
+  units.update({{"order", "m"}, {"fps", "1/s"}, {"gravity", "m/s^2"}});
+  AddUnits(true, &units);
+  return units;
 }
 
 std::string StoreMeta(const Twin& twin, const std::string& path) {
@@ -213,11 +199,13 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
   const std::string prefix = LevelPrefix(n);
   TwinLevel level;
   ReadShape(&fields, prefix, controllers, &level.system);
-  VisitVectors(level, [&](const char* name, const char* size, Eigen::VectorXd& values) {
-    values = fields.Vector(prefix + name, size);
-  });
-  VisitScalars(level,
-               [&](const char* name, double& value) { value = fields.Scalar(prefix + name); });
+  for (const LevelList& list : kLevelLists) {
+    list.In(level.system) =
+        fields.Vector(prefix + list.name, list.of_springs ? "springs" : "nodes");
+  }
+  for (const LevelScalar& number : kLevelScalars) {
+    number.In(level.system) = fields.Scalar(prefix + number.name);
+  }
   if (fields.Has(prefix + "cone")) {
     const std::string cone = fields.Text(prefix + "cone");
     if (cone != kPyramidal) {

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "rollout/mujoco_log.h"
+#include "twin/attribute_names.h"
+#include "twin/cone_name.h"
 #include "twin/error.h"
+#include "twin/level_numbers.h"
 
 namespace physpring {
 namespace {
@@ -77,13 +80,11 @@ Config Attributes(const SpringMassSystem& system, const LevelSceneOptions& optio
               {"controller_velocity", options.controller_velocity ? "1" : "0"}};
   }
   if (options.contact) {
-    const ContactCoefficients& contact = system.contact;
-    Set("restitution", fmt::to_string(contact.restitution), &config);
-    Set("friction", fmt::to_string(contact.friction), &config);
-    Set("object_restitution", fmt::to_string(contact.object_restitution), &config);
-    Set("object_friction", fmt::to_string(contact.object_friction), &config);
-    if (contact.cone == FrictionCone::kPyramidal) Set("cone", "pyramidal", &config);
-    Set("collision_distance", fmt::to_string(contact.collision_distance), &config);
+    for (const LevelScalar& number : kLevelScalars) {
+      if (number.role == NumberRole::kSprings) continue;
+      Set(number.name, fmt::to_string(number.In(system)), &config);
+    }
+    if (system.contact.cone == FrictionCone::kPyramidal) Set(kAttrCone, kPyramidal, &config);
     Set("contact_radius", Join(system.contact_radius), &config);
   }
   for (const auto& [key, value] : options.config) Set(key, value, &config);
