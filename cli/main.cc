@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program `physpring`. Exit status: 0 done, 1 failed (one line on stderr), 2 bad usage, 128 + n
 // stopped by signal n (after Ctrl-C 130).
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -18,10 +19,23 @@ std::string DescribeBadUsage(const CLI::App* app, const CLI::Error& error) {
   return command + ": " + error.what() + " (see " + command + " --help)\n";
 }
 
+// What `physpring rollout SCENE --controllers REC` did has a command of its own.
+void RenameOldReplay(int argc, char** argv) {
+  static char replay[] = "replay";
+  if (argc < 2 || std::string(argv[1]) != "rollout") return;
+  const bool old = std::any_of(argv + 2, argv + argc, [](const std::string& argument) {
+    return argument == "--controllers" || argument.starts_with("--controllers=");
+  });
+  if (!old) return;
+  std::fputs("note: rollout --controllers is now physpring replay\n", stderr);
+  argv[1] = replay;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is a failed write like others
+  RenameOldReplay(argc, argv);
   CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);
@@ -31,6 +45,7 @@ int main(int argc, char** argv) {
   physpring::AddEvalCommand(app);
   physpring::AddExportCommand(app);
   physpring::AddDiagnoseCommand(app);
+  physpring::AddReplayCommand(app);
   physpring::AddRolloutCommand(app);
   physpring::AddMergeCommand(app);
   physpring::AddInfoCommand(app);

@@ -18,8 +18,8 @@
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/picture_words.h"
 #include "cli/progress.h"
-#include "cli/rollout_recording.h"
 #include "cli/rollout_report.h"
 #include "rollout/camera_thread.h"
 #include "rollout/make_policy.h"
@@ -32,13 +32,10 @@
 namespace physpring {
 namespace {
 
-constexpr Word<PictureQuality> kQualityWords[] = {{"fast", PictureQuality::kFast},
-                                                  {"high", PictureQuality::kHigh}};
 constexpr Word<bool> kStateWords[] = {{"full", true}, {"actions", false}};
 
 struct RolloutArguments {
   std::string task, json, save_scene, shard;
-  std::string controllers, twin;  // a recording instead of a policy
   std::string video;
   PictureQuality quality = PictureQuality::kFast;
   std::vector<std::string> cameras;  // in videos
@@ -135,11 +132,6 @@ void WarnOfProblems(const std::vector<EpisodeSummary>& episodes) {
 }
 
 void Run(const RolloutArguments& arguments) {
-  if (!arguments.controllers.empty()) {
-    RolloutRecording({arguments.task, arguments.controllers, arguments.twin, arguments.video,
-                      arguments.json, arguments.cameras, arguments.quality});
-    return;
-  }
   LoadPluginLibrary();
   const std::string folder = FolderOf(arguments.task);
   const Task task = ReadTask(folder);
@@ -247,31 +239,6 @@ void AddPictureOptions(CLI::App* command, RolloutArguments* arguments) {
             "of pictures; high: shadows, smooth edges, round shapes");
 }
 
-void AddRecordingOptions(CLI::App* command, RolloutArguments* arguments) {
-  CLI::Option* controllers =
-      command
-          ->add_option("--controllers", arguments->controllers,
-                       "a recording: the twin's controllers go where its controllers went, and the "
-                       "motion is compared with what was measured")
-          ->type_name("REC");
-  command
-      ->add_option(
-          "--twin", arguments->twin,
-          "of the scene, where its level is above 0: to start from the recording and to be "
-          "compared with it")
-      ->type_name("TWIN")
-      ->needs(controllers);
-}
-
-// None of these goes with a recording.
-void ExcludeSweepOptions(CLI::App* command) {
-  for (const char* option :
-       {"--level", "--policy", "--patience", "--episodes", "--first", "--seed", "--action-noise",
-        "--perturb", "--threads", "--shard", "--output", "--states", "--films", "--save-scene"}) {
-    command->get_option("--controllers")->excludes(command->get_option(option));
-  }
-}
-
 std::vector<JudgedPolicy> ReadFolders(const std::vector<std::string>& folders) {
   std::map<std::string, std::size_t> known;  // by identity
   std::vector<JudgedPolicy> policies;
@@ -297,16 +264,13 @@ std::vector<JudgedPolicy> ReadFolders(const std::vector<std::string>& folders) {
 
 void AddRolloutCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "rollout",
-      "Runs a policy on a task, episode after episode, and counts successes; or moves an exported "
-      "twin as in a recording.");
+      "rollout", "Runs a policy on a task, episode after episode, and counts successes.");
   const auto arguments = std::make_shared<RolloutArguments>();
   command
       ->add_option("task", arguments->task,
-                   "folder with task.json; with --controllers a scene that physpring export wrote")
+                   "folder with task.json; an exported scene is moved by physpring replay")
       ->required()
       ->type_name("TASK");
-  AddRecordingOptions(command, arguments.get());
   AddSweepOptions(command, arguments.get());
   command
       ->add_option("-o,--output", arguments->sweep.folder,
@@ -320,7 +284,6 @@ void AddRolloutCommand(CLI::App& app) {
       ->add_option("--save-scene", arguments->save_scene,
                    "write an MJCF file of the scene with the first of the levels in it")
       ->type_name("FILE.xml");
-  ExcludeSweepOptions(command);
   command->callback([arguments] { Run(*arguments); });
 }
 

@@ -148,7 +148,7 @@ TEST_F(RolloutTest, MovesAnExportedTwinAsInARecording) {
   for (const int level : {0, 1}) {
     const std::string scene = File(level == 0 ? "block/scene.xml" : "block/scene_level1.xml");
     const ProgramResult result =
-        RunProgram({"rollout", scene, "--controllers", File("block.npz"), "--twin",
+        RunProgram({"replay", scene, "--controllers", File("block.npz"), "--twin",
                     File("block.twin.npz"), "--json", File("replay.json")});
     ASSERT_EQ(result.status, 0) << result.errors;
     const json report = json::parse(ReadFile(File("replay.json")));
@@ -158,9 +158,15 @@ TEST_F(RolloutTest, MovesAnExportedTwinAsInARecording) {
     EXPECT_GT(motionless, 5e-3);
     EXPECT_LT(report["errors"]["track"], level == 0 ? 1e-6 : motionless);
   }
-  EXPECT_TRUE(FailsWith(RunProgram({"rollout", File("block/scene.xml"), "--controllers", "no.npz"}),
+  EXPECT_TRUE(FailsWith(RunProgram({"replay", File("block/scene.xml"), "--controllers", "no.npz"}),
                         "no.npz: cannot be read"));
-  EXPECT_EQ(RunProgram({"rollout", "x.xml", "--controllers", "a.npz", "--level", "1"}).status, 2);
+  EXPECT_EQ(RunProgram({"replay", "x.xml", "--controllers", "a.npz", "--level", "1"}).status, 2);
+  EXPECT_EQ(RunProgram({"replay", "x.xml"}).status, 2);
+  // as it was called once
+  const ProgramResult old =
+      RunProgram({"rollout", File("block/scene.xml"), "--controllers", File("block.npz")});
+  EXPECT_EQ(old.status, 0) << old.errors;
+  EXPECT_NE(old.errors.find("is now physpring replay"), std::string::npos) << old.errors;
 }
 
 TEST_F(RolloutTest, SaysWhatIsWrong) {

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring replay: an exported twin in MuJoCo, moved as in a recording and compared with it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/eval_report.h"
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/output_files.h"
+#include "cli/picture_words.h"
+#include "cli/progress.h"
+#include "rollout/controller_replay.h"
+#include "rollout/plugin_library.h"
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+#include "twin/evaluate.h"
+
+namespace physpring {
+namespace {
+
+struct ReplayArguments {
+  std::string scene, recording;
+  std::string twin;                  // file; empty: none
+  std::string video, json;           // files to write; empty: none
+  std::vector<std::string> cameras;  // in the video
+  PictureQuality quality = PictureQuality::kFast;
+};
+
+// The replay with progress. Throws Interrupted where a signal stops it.
+ControllerReplay Replay(const ReplayArguments& arguments, const Recording& recording) {
+  std::optional<Twin> twin;
+  if (!arguments.twin.empty()) twin = ReadTwin(arguments.twin);
+  const InterruptWatch watch;
+  Progress progress(0);
+  ReplayOptions options;
+  options.video = arguments.video;
+  options.cameras = arguments.cameras;
+  options.quality = arguments.quality;
+  options.progress = [&](int frame) {
+    if (watch.signal() != 0) throw Interrupted{watch.signal()};
+    progress.Show(static_cast<double>(frame) / recording.frame_count(),
+                  fmt::format("frame {} of {}", frame, recording.frame_count()));
+  };
+  return ReplayControllers(arguments.scene, recording, twin ? &*twin : nullptr, options);
+}
+
+// Loads the plugin, which a scene of tendons does not need. Empty, or why it could not be.
+std::string WhyNoPlugin() {
+  try {
+    LoadPluginLibrary();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Over all frames after the first one.
+ErrorMeans Compare(const Recording& recording, const std::vector<Points>& particles) {
+  return MeansOverFrames(ComputeParticleErrors(recording, particles), 1, recording.frame_count());
+}
+
+std::string ReplayRow(const std::string& name, const std::string& model, const ErrorMeans& errors) {
+  return fmt::format("{:<10} {:>41} | {:>8} {:>8}\n", name, model, Millimetres(errors.cd.value),
+                     Millimetres(errors.track.value));
+}
+
+nlohmann::ordered_json ErrorsAsJson(const ErrorMeans& errors) {
+  nlohmann::ordered_json json;
+  json["cd"] = json["track"] = nullptr;
+  if (errors.cd.value) json["cd"] = *errors.cd.value;
+  if (errors.track.value) json["track"] = *errors.track.value;
+  return json;
+}
+
+// The replay beside a body that does not move.
+struct ReplayErrors {
+  ErrorMeans replayed, motionless;
+};
+
+ReplayErrors ErrorsOf(const ControllerReplay& replay, const Recording& recording) {
+  const std::vector<Points> still(replay.particles.size(), replay.particles[0]);
+  return {Compare(recording, replay.particles), Compare(recording, still)};
+}
+
+void PrintTable(const ReplayArguments& arguments, const Recording& recording,
+                const ControllerReplay& replay, const ReplayErrors& errors) {
+  const double fps = (recording.frame_count() - 1) / std::max(1e-9, replay.physics);
+  fmt::print("{} as {} moved: {} frames at {} fps\n\n", arguments.scene, arguments.recording,
+             recording.frame_count(), recording.fps);
+  fmt::print("{:<10} {:>6} {:>8} {:>13} {:>11} | {:>8} {:>8}\n", "in mm", "nodes", "steps",
+             "time step ms", "FPS", "CD", "track");
+  fmt::print("{}", ReplayRow(fmt::format("level {}", replay.level),
+                             fmt::format("{:>6} {:>8} {:>13.4g} {:>11.0f}", replay.nodes,
+                                         replay.steps, 1e3 * replay.timestep, fps),
+                             errors.replayed));
+  fmt::print("{}", ReplayRow("motionless", "", errors.motionless));
+  if (!arguments.video.empty()) {
+    fmt::print("\nvideo: {}, drawn in {:.2g} s\n", arguments.video, replay.rendering);
+  }
+}
+
+void WriteReport(const ReplayArguments& arguments, const Recording& recording,
+                 const ControllerReplay& replay, const ReplayErrors& errors) {
+  const nlohmann::ordered_json json = {{"scene", arguments.scene},
+                                       {"recording", arguments.recording},
+                                       {"level", replay.level},
+                                       {"nodes", replay.nodes},
+                                       {"timestep_s", replay.timestep},
+                                       {"steps", replay.steps},
+                                       {"frames", recording.frame_count()},
+                                       {"errors", ErrorsAsJson(errors.replayed)},
+                                       {"motionless", ErrorsAsJson(errors.motionless)},
+                                       {"physics_s", replay.physics},
+                                       {"rendering_s", replay.rendering}};
+  WriteFileAtomically(arguments.json, json.dump(2) + "\n");
+}
+
+void Run(const ReplayArguments& arguments) {
+  const std::string missing = WhyNoPlugin();
+  ExpectOutputs({arguments.video, arguments.json},
+                {arguments.scene, arguments.recording, arguments.twin});
+  const Recording recording = ReadRecording(arguments.recording);
+  for (const std::string& warning : recording.warnings) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  ControllerReplay replay;
+  try {
+    replay = Replay(arguments, recording);
+  } catch (const Error& error) {
+    if (missing.empty()) throw;
+    throw Error(fmt::format("{}; {}", error.what(), missing));
+  }
+  for (const std::string& warning : replay.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  const ReplayErrors errors = ErrorsOf(replay, recording);
+  PrintTable(arguments, recording, replay, errors);
+  if (!arguments.json.empty()) WriteReport(arguments, recording, replay, errors);
+}
+
+}  // namespace
+
+void AddReplayCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("replay",
+                                         "Moves an exported twin in MuJoCo as in a recording, and "
+                                         "compares it with what was measured.");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  command->add_option("scene", arguments->scene, "a scene that physpring export wrote")
+      ->required()
+      ->type_name("SCENE.xml");
+  command
+      ->add_option("--controllers", arguments->recording,
+                   "a recording: the twin's controllers go where its controllers went")
+      ->required()
+      ->type_name("REC");
+  command
+      ->add_option(
+          "--twin", arguments->twin,
+          "of the scene, where its level is above 0: to start from the recording and to be "
+          "compared with it")
+      ->type_name("TWIN");
+  command
+      ->add_option("--video", arguments->video,
+                   "film it (.mp4, or _%04d.png for a picture a frame); needs ffmpeg")
+      ->type_name("FILE");
+  command
+      ->add_option("--cameras", arguments->cameras,
+                   "in the video, side by side; default: the first one of the scene")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  AddChoice(command, "--quality", &arguments->quality, kQualityWords,
+            "of pictures; high: shadows, smooth edges, round shapes");
+  command->add_option("--json", arguments->json, "report to write")->type_name("FILE");
+  command->callback([arguments] { Run(*arguments); });
+}
+
+}  // namespace physpring
