@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "trainer/fit_data.h"
+#include "trainer/data/fit_data.h"
+#include "trainer/data/train_options.h"
 #include "trainer/journal/journal.h"
-#include "trainer/train_options.h"
 #include "twin/twin.h"
 
 namespace physpring {

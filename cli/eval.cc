@@ -10,12 +10,12 @@
 
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
-#include "cli/eval_report.h"
-#include "cli/evaluation.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
-#include "cli/picture/page.h"
-#include "trainer/parallel.h"
+#include "report/eval_report.h"
+#include "report/evaluation.h"
+#include "report/picture/page.h"
+#include "trainer/solvers/parallel.h"
 #include "twin/atomic_file.h"
 #include "twin/dataset.h"
 

@@ -6,8 +6,8 @@
 
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
-#include "cli/info_text.h"
 #include "cli/output_files.h"
+#include "report/info_text.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/npz.h"

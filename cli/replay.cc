@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/eval_report.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/picture_words.h"
 #include "cli/progress.h"
+#include "report/eval_report.h"
 #include "rollout/controller_replay.h"
 #include "rollout/plugin_library.h"
 #include "twin/atomic_file.h"

@@ -20,7 +20,7 @@
 #include "cli/output_files.h"
 #include "cli/picture_words.h"
 #include "cli/progress.h"
-#include "cli/rollout_report.h"
+#include "report/rollout_report.h"
 #include "rollout/camera_thread.h"
 #include "rollout/make_policy.h"
 #include "rollout/plugin_library.h"

@@ -22,7 +22,7 @@
 #include "cli/resume_options.h"
 #include "cli/train_options.h"
 #include "cli/training.h"
-#include "trainer/fit_data.h"
+#include "trainer/data/fit_data.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/predict.h"

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "trainer/train_options.h"
+#include "trainer/data/train_options.h"
 
 namespace physpring {
 

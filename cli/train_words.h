@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "cli/option_values.h"
-#include "trainer/train_options.h"
+#include "trainer/data/train_options.h"
 #include "twin/cone_name.h"
 
 namespace physpring {

@@ -11,8 +11,8 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
-#include "trainer/parallel.h"
-#include "trainer/train.h"
+#include "trainer/fits/train.h"
+#include "trainer/solvers/parallel.h"
 #include "twin/evaluate.h"
 
 namespace physpring {

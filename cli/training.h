@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli/checkpoint.h"
-#include "trainer/fit_data.h"
-#include "trainer/train_options.h"
+#include "trainer/data/fit_data.h"
+#include "trainer/data/train_options.h"
 #include "twin/twin.h"
 
 namespace physpring {

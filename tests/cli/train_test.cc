@@ -17,7 +17,7 @@
 #include "tests/support/small_twin.h"
 #include "tests/support/swung_rope.h"
 #include "tests/support/temporary_folder.h"
-#include "trainer/phystwin_variables.h"
+#include "trainer/bodies/phystwin_variables.h"
 #include "twin/atomic_file.h"
 #include "twin/twin.h"
 

@@ -4,8 +4,8 @@
 #define PHYSPRING_TESTS_SUPPORT_SWUNG_CHAIN_H_
 
 #include "tests/support/swung_rope.h"
-#include "trainer/chosen_body.h"
 #include "trainer/bodies/candidates.h"
+#include "trainer/bodies/chosen_body.h"
 
 namespace physpring {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "trainer/start_system.h"
+#include "trainer/bodies/start_system.h"
 #include "twin/stability.h"
 
 namespace physpring {

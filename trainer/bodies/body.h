@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "trainer/levenberg_marquardt.h"
-#include "trainer/parameters.h"
+#include "trainer/bodies/parameters.h"
+#include "trainer/solvers/levenberg_marquardt.h"
 #include "twin/effects/effect_values.h"
 #include "twin/recording.h"
 #include "twin/spring_mass_system.h"

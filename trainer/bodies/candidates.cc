@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "trainer/bodies/bending_chain.h"
+#include "trainer/bodies/particle_mass.h"
 #include "trainer/bodies/spring_net.h"
-#include "trainer/particle_mass.h"
-#include "trainer/spring_radius.h"
+#include "trainer/bodies/spring_radius.h"
 
 namespace physpring {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trainer/bodies/body.h"
-#include "trainer/train_options.h"
+#include "trainer/data/train_options.h"
 
 namespace physpring {
 

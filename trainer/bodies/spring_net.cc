@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/spring_net.h"
 
-#include "trainer/factors.h"
+#include "trainer/bodies/factors.h"
 
 namespace physpring {
 namespace {

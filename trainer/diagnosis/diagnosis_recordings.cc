@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "trainer/held_back.h"
+#include "trainer/data/held_back.h"
 
 namespace physpring {
 namespace {

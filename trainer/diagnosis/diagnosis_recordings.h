@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "trainer/fit_data.h"
+#include "trainer/data/fit_data.h"
 #include "twin/recording.h"
 
 namespace physpring {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trainer/parallel.h"
+#include "trainer/solvers/parallel.h"
 
 namespace physpring {
 namespace {

@@ -12,9 +12,9 @@
 #include <limits>
 #include <vector>
 
-#include "trainer/effect_entries.h"
-#include "trainer/levenberg_marquardt.h"
-#include "trainer/parameters.h"
+#include "trainer/bodies/effect_entries.h"
+#include "trainer/bodies/parameters.h"
+#include "trainer/solvers/levenberg_marquardt.h"
 
 namespace physpring {
 

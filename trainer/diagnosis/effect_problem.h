@@ -9,8 +9,8 @@
 
 #include "trainer/diagnosis/effect_model.h"
 #include "trainer/diagnosis/split_recording.h"
-#include "trainer/motion_problem.h"
-#include "trainer/track_error.h"
+#include "trainer/motion/motion_problem.h"
+#include "trainer/motion/track_error.h"
 
 namespace physpring {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "trainer/parallel.h"
+#include "trainer/solvers/parallel.h"
 
 namespace physpring {
 namespace {

@@ -8,7 +8,7 @@
 #include "trainer/diagnosis/acceptance.h"
 #include "trainer/diagnosis/effect_search.h"
 #include "trainer/diagnosis/trained_fit.h"
-#include "trainer/parallel.h"
+#include "trainer/solvers/parallel.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {

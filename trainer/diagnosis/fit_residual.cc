@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trainer/factors.h"
-#include "trainer/parallel.h"
+#include "trainer/bodies/factors.h"
+#include "trainer/solvers/parallel.h"
 
 namespace physpring {
 namespace {

@@ -5,12 +5,12 @@
 #include <cassert>
 #include <utility>
 
-#include "trainer/factors.h"
-#include "trainer/gauss_newton.h"
-#include "trainer/levenberg_marquardt.h"
-#include "trainer/observer.h"
-#include "trainer/parallel.h"
-#include "trainer/start_system.h"
+#include "trainer/bodies/factors.h"
+#include "trainer/bodies/start_system.h"
+#include "trainer/motion/observer.h"
+#include "trainer/solvers/gauss_newton.h"
+#include "trainer/solvers/levenberg_marquardt.h"
+#include "trainer/solvers/parallel.h"
 #include "twin/stability.h"
 
 namespace physpring {

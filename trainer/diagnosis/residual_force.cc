@@ -12,7 +12,7 @@
 #include <random>
 #include <utility>
 
-#include "trainer/rollout.h"
+#include "trainer/motion/rollout.h"
 #include "twin/error.h"
 #include "twin/uniform.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The residual of a twin as forces: the smallest ones, constant during each frame, with which the
-// twin, followed by an observer (trainer/observer.h), predicts the measured motion. They say where,
-// when and in which direction the model lacks something, before any effect is named.
+// twin, followed by an observer (trainer/motion/observer.h), predicts the measured motion. They say
+// where, when and in which direction the model lacks something, before any effect is named.
 //
 // r the distances of measured from predicted points, J their derivatives with respect to kicks of
 // the velocities at the frames (f T / m for a force f during a frame of T seconds): each step takes

@@ -3,7 +3,7 @@
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_SPLIT_RECORDING_H_
 
-#include "trainer/episode.h"
+#include "trainer/data/episode.h"
 
 namespace physpring {
 

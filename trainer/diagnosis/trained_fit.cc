@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/diagnosis/trained_fit.h"
 
-#include "trainer/dense_fit.h"
+#include "trainer/fits/dense_fit.h"
 #include "twin/error.h"
 #include "twin/predict.h"
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "trainer/adam.h"
-#include "trainer/train_options.h"
+#include "trainer/data/train_options.h"
+#include "trainer/solvers/adam.h"
 
 namespace physpring {
 

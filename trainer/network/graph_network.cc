@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "trainer/logistic.h"
+#include "trainer/bodies/logistic.h"
 
 namespace physpring {
 namespace {

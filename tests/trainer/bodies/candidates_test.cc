@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/swung_rope.h"
-#include "trainer/factors.h"
+#include "trainer/bodies/factors.h"
 #include "twin/effects/effect_set.h"
 
 namespace physpring {

@@ -10,7 +10,7 @@
 
 #include "tests/support/random_system.h"
 #include "tests/support/tendon_oracle.h"
-#include "trainer/factors.h"
+#include "trainer/bodies/factors.h"
 #include "twin/effects/registry.h"
 #include "twin/stability.h"
 

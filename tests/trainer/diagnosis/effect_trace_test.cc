@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/swung_rope.h"
-#include "trainer/start_system.h"
+#include "trainer/bodies/start_system.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "tests/support/swung_rope.h"
-#include "trainer/start_system.h"
+#include "trainer/bodies/start_system.h"
 
 namespace physpring {
 namespace {

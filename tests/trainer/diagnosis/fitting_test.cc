@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/support/swung_rope.h"
-#include "trainer/start_system.h"
+#include "trainer/bodies/start_system.h"
 
 namespace physpring {
 namespace {

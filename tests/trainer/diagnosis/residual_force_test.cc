@@ -9,8 +9,8 @@
 
 #include "tests/support/random_system.h"
 #include "tests/support/swung_rope.h"
+#include "trainer/bodies/start_system.h"
 #include "trainer/diagnosis/residual_pattern.h"
-#include "trainer/start_system.h"
 #include "twin/effects/registry.h"
 #include "twin/stability.h"
 

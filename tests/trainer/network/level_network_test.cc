@@ -6,7 +6,7 @@
 #include "tests/support/gradient_check.h"
 #include "tests/support/random_system.h"
 #include "tests/support/small_twin.h"
-#include "trainer/lifted_loss.h"
+#include "trainer/motion/lifted_loss.h"
 
 namespace physpring {
 namespace {

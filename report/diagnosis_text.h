@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a diagnosis found, in words: as lines for a terminal, and the sentences that the page has,
+// too.
+#ifndef PHYSPRING_REPORT_DIAGNOSIS_TEXT_H_
+#define PHYSPRING_REPORT_DIAGNOSIS_TEXT_H_
+
+#include <string>
+#include <vector>
+
+#include "trainer/diagnosis/diagnosis.h"
+
+namespace physpring {
+
+std::string FormatDiagnosisText(const Diagnosis& diagnosis);
+
+// The effects that the held-out frames cannot tell from the first one accepted.
+std::vector<std::string> Confounded(const Diagnosis& diagnosis);
+
+std::string InMillimetres(double metres);                    // "1.20 mm", or "no data"
+std::string DescribeVerdict(const Diagnosis& diagnosis);     // "the model lacks air_drag"
+std::string DescribeRecordings(const Diagnosis& diagnosis);  // "fitted to a; judged by b"
+std::string DescribeGain(const BootstrapResult& gain);       // with its 95 % interval
+std::string DescribeCertainty(const Diagnosis& diagnosis);   // what is behind "+-"
+std::string DescribeConfounded(const Diagnosis& diagnosis);  // empty if nothing is confounded
+std::string DescribeResidual(const Diagnosis& diagnosis);    // "missing force on a node: ..."
+// "mass_kg 0.052 +- 0.001, place_x_m 0.1 +- 0.003, ..." of the effect of that index.
+std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_REPORT_DIAGNOSIS_TEXT_H_

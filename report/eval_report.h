@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `physpring eval` prints and writes. JSON (docs/eval.md): lengths in metres, null for a mean
+// without data.
+#ifndef PHYSPRING_REPORT_EVAL_REPORT_H_
+#define PHYSPRING_REPORT_EVAL_REPORT_H_
+
+#include <optional>
+#include <string>
+
+#include "report/evaluation.h"
+
+namespace physpring {
+
+// A length in metres as tables have it: millimetres with two digits, "-" where there is none.
+std::string Millimetres(const std::optional<double>& metres);
+
+// A table for each recording and, of several, one of their means. Ends with a newline.
+std::string FormatTables(const Evaluation& evaluation);
+
+// The JSON document, ending with a newline.
+std::string FormatJson(const Evaluation& evaluation);
+
+// Writes levelN/points (T, N, 3): the measured points as predicted by each level, in all frames.
+// `path` is the file if it ends with ".npz" (one recording only), else a folder for NAME.npz of
+// each recording; it is made if missing. Throws Error if that cannot be, before anything is
+// written.
+void WriteTrajectories(const Evaluation& evaluation, const std::string& path);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_REPORT_EVAL_REPORT_H_

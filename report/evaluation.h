@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `physpring eval` found, and the rows of its tables: one for each level, the last one for a
+// body that does not move.
+#ifndef PHYSPRING_REPORT_EVALUATION_H_
+#define PHYSPRING_REPORT_EVALUATION_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/dataset.h"
+#include "twin/evaluate.h"
+#include "twin/recording.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+struct EvaluatedRecording {
+  std::string path;
+  bool published_l1 = false;  // whether that measure is meant for it
+  Recording recording;
+  RecordingResult result;
+};
+
+struct Evaluation {
+  std::string twin_path;
+  Twin twin;
+  bool single_precision = false;
+  std::vector<EvaluatedRecording> recordings;
+};
+
+// Errors over a range of frames, of one recording or of several (then means over the recordings
+// that have data, and sums of frames).
+struct RowErrors {
+  MeanError cd, cd_euclidean, track;
+  MeanError cd_lifted, cd_euclidean_lifted, track_lifted;
+};
+
+struct Row {
+  std::string name;  // "level 0", "motionless"
+  int level = -1;    // -1: motionless, then the numbers up to `frames_per_second` are 0
+  int nodes = 0;
+  int springs = 0;
+  int substeps = 0;  // a frame; of several recordings the most
+  double frames_per_second = 0;
+  std::optional<RowErrors> fit;  // none: not trained on
+  RowErrors prediction;
+  std::optional<double> published_l1;  // m
+};
+
+std::vector<Row> RowsOf(const EvaluatedRecording& evaluated);
+
+// Each row of the whole evaluation; every recording counts once.
+std::vector<Row> MeanRows(const Evaluation& evaluation);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_REPORT_EVALUATION_H_

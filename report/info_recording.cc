@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/info_text.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What can be told from the positions alone.
+struct Measured {
+  double missing_fraction = 0;      // of all points in all frames
+  int frames_without_data = 0;      // in which no point is seen
+  double largest_displacement = 0;  // m, of a point from where it started
+  Eigen::Vector3d extent{0, 0, 0};  // m, of points and interior in frame 0
+};
+
+Measured Measure(const Recording& recording) {
+  Measured measured;
+  Eigen::Index missing = 0;
+  for (const Points& frame : recording.points) {
+    Eigen::Index seen = 0;
+    for (Eigen::Index i = 0; i < frame.cols(); ++i) {
+      if (!frame.col(i).allFinite()) continue;
+      ++seen;
+      measured.largest_displacement =
+          std::max(measured.largest_displacement, (frame.col(i) - recording.start.col(i)).norm());
+    }
+    missing += frame.cols() - seen;
+    measured.frames_without_data += seen == 0;
+  }
+  const double all = static_cast<double>(recording.frame_count()) * recording.point_count();
+  measured.missing_fraction = static_cast<double>(missing) / all;
+  const Points start = recording.start.leftCols(recording.particle_count());
+  measured.extent = start.rowwise().maxCoeff() - start.rowwise().minCoeff();
+  return measured;
+}
+
+double RodLength(const Recording& recording) {
+  return recording.order.maxCoeff() - recording.order.minCoeff();
+}
+
+Eigen::Index PointColumns(const std::vector<Points>& frames) {
+  return frames.empty() ? 0 : frames[0].cols();
+}
+
+Json ToJson(const Eigen::VectorXd& values) {
+  return Json(std::vector<double>(values.begin(), values.end()));
+}
+
+}  // namespace
+
+std::string DescribeRecording(const Recording& recording) {
+  const Measured measured = Measure(recording);
+  const int frames = recording.frame_count();
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("frames", fmt::format("{} at {:g} fps, {:.2f} s; the first {} are for fitting", frames,
+                             recording.fps, (frames - 1) / recording.fps, recording.train_frames));
+  line("points",
+       fmt::format("{}, {:.1f} % of their positions not seen{}", recording.point_count(),
+                   100 * measured.missing_fraction,
+                   measured.frames_without_data > 0
+                       ? fmt::format(", {} frames without any", measured.frames_without_data)
+                       : ""));
+  line("interior", fmt::format("{}", recording.interior_count()));
+  line("controllers", fmt::format("{}", recording.controller_count()));
+  if (!recording.surface.empty())
+    line("surface", fmt::format("{}", PointColumns(recording.surface)));
+  if (!recording.track.empty())
+    line("key points", fmt::format("{}", PointColumns(recording.track)));
+  const Eigen::Vector3d& extent = measured.extent;
+  line("size",
+       fmt::format("{:.3f} x {:.3f} x {:.3f} m in frame 0", extent.x(), extent.y(), extent.z()));
+  line("motion", fmt::format("up to {:.3f} m from where it starts", measured.largest_displacement));
+  const double speed = recording.velocity.colwise().norm().maxCoeff();
+  line("start", speed > 0 ? fmt::format("in motion, up to {:.2f} m/s", speed) : "at rest");
+  line("rest shape", recording.rest_given ? "given" : "frame 0");
+  if (recording.order.size() > 0) line("rod", fmt::format("{:.3f} m long", RodLength(recording)));
+  line("mass", fmt::format("{:g} kg", recording.mass));
+  line("gravity", fmt::format("{:g} {:g} {:g} m/s^2", recording.gravity.x(), recording.gravity.y(),
+                              recording.gravity.z()));
+  if (recording.ground) {
+    const Eigen::Vector4d& plane = *recording.ground;
+    line("ground",
+         fmt::format("{:g} x + {:g} y + {:g} z = {:g} m", plane[0], plane[1], plane[2], plane[3]));
+  } else {
+    line("ground", "none");
+  }
+  line("hash", recording.hash);
+  return text;
+}
+
+Json RecordingToJson(const Recording& recording) {
+  const Measured measured = Measure(recording);
+  return {{"kind", "recording"},
+          {"name", recording.name},
+          {"hash", recording.hash},
+          {"frames", recording.frame_count()},
+          {"train_frames", recording.train_frames},
+          {"fps", recording.fps},
+          {"duration_s", (recording.frame_count() - 1) / recording.fps},
+          {"points", recording.point_count()},
+          {"interior", recording.interior_count()},
+          {"controllers", recording.controller_count()},
+          {"surface", PointColumns(recording.surface)},
+          {"track", PointColumns(recording.track)},
+          {"missing_fraction", measured.missing_fraction},
+          {"frames_without_data", measured.frames_without_data},
+          {"size_m", ToJson(measured.extent)},
+          {"largest_displacement_m", measured.largest_displacement},
+          {"rest_given", recording.rest_given},
+          {"rod_length_m", recording.order.size() > 0 ? Json(RodLength(recording)) : Json(nullptr)},
+          {"mass_kg", recording.mass},
+          {"gravity_m_s2", ToJson(recording.gravity)},
+          {"ground", recording.ground ? ToJson(*recording.ground) : Json(nullptr)},
+          {"warnings", recording.warnings}};
+}
+
+}  // namespace physpring

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/info_text.h"
+#include "twin/cone_name.h"
+#include "twin/effects/effect_json.h"
+#include "twin/effects/registry.h"
+#include "twin/level_numbers.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Range {
+  double least, median, most;
+};
+
+Range RangeOf(const Eigen::VectorXd& values) {
+  if (values.size() == 0) return {0, 0, 0};
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  return {sorted.front(), (sorted[(n - 1) / 2] + sorted[n / 2]) / 2, sorted.back()};
+}
+
+// "rest_length_m": the key of a number in JSON.
+std::string KeyOf(const std::string& name, const std::string& unit) {
+  std::string key = unit.empty() ? name : name + "_" + unit;
+  for (char& letter : key) {
+    if (letter == ' ' || letter == '/') letter = '_';
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return key;
+}
+
+// "rest length"
+std::string WordsOf(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+// Frames [0, train_frames) of each recording.
+std::string DescribeTraining(const Twin& twin) {
+  if (twin.trained_on.empty()) return "nothing";
+  constexpr std::size_t kShown = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, twin.trained_on.size()); ++i) {
+    text += fmt::format("{}{} (frames 0-{})", i > 0 ? ", " : "", twin.trained_on[i].name,
+                        twin.trained_on[i].train_frames - 1);
+  }
+  if (twin.trained_on.size() > kShown) {
+    text += fmt::format(" and {} more", twin.trained_on.size() - kShown);
+  }
+  return text;
+}
+
+// "drag_kg_per_m 0.01, wind_x_m_per_s 2, ..."
+std::string DescribeValues(const EffectValues& effect) {
+  std::string text;
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
+    text += (text.empty() ? "" : ", ") + parameter.key;
+    for (int n = 0; n < parameter.count; ++n) text += fmt::format(" {:.4g}", effect.values[i++]);
+  }
+  return text;
+}
+
+std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
+  const SpringMassSystem& system = level.system;
+  const double stable = ComputeStabilityBound(system).timestep;
+  std::string text = fmt::format(
+      "\nlevel {}: {} nodes, {} springs, {:g} kg\n"
+      "  sub-step of training {:.3g} s, stable below {:.3g} s\n"
+      "  {:<14} {:>10} {:>10} {:>10}\n",
+      number, system.node_count(), system.spring_count(), system.mass.sum(),
+      1.0 / level.substeps_per_second, stable, "", "least", "median", "most");
+  for (const LevelList& list : kLevelLists) {
+    const Range range = RangeOf(list.In(system));
+    text += fmt::format("  {:<14} {:>10.4g} {:>10.4g} {:>10.4g} {}\n", WordsOf(list.name),
+                        range.least, range.median, range.most, list.unit);
+  }
+  const ContactCoefficients& contact = system.contact;
+  text += fmt::format("  drag {:.4g} 1/s; contact: restitution {:.3g}, friction {:.3g}{}; ",
+                      system.drag, contact.restitution, contact.friction,
+                      contact.cone == FrictionCone::kElliptic ? "" : " (pyramidal cone)");
+  text += contact.collision_distance > 0
+              ? fmt::format("particles collide at {:.3g} m: restitution {:.3g}, friction {:.3g}\n",
+                            contact.collision_distance, contact.object_restitution,
+                            contact.object_friction)
+              : "particles do not collide\n";
+  for (const EffectValues& effect : system.effects) {
+    text += fmt::format("  effect {}: {}\n", effect.name, DescribeValues(effect));
+  }
+  return text;
+}
+
+Json ToJson(const TwinLevel& level, std::size_t number) {
+  const SpringMassSystem& system = level.system;
+  const double stable = ComputeStabilityBound(system).timestep;
+  Json json = {{"level", number},
+               {"nodes", system.node_count()},
+               {"springs", system.spring_count()},
+               {"total_mass_kg", system.mass.sum()},
+               {"substeps_per_second", level.substeps_per_second},
+               {"stable_timestep_s", std::isfinite(stable) ? Json(stable) : Json(nullptr)}};
+  for (const LevelList& list : kLevelLists) {
+    const Range range = RangeOf(list.In(system));
+    json[KeyOf(list.name, list.unit)] = {
+        {"min", range.least}, {"median", range.median}, {"max", range.most}};
+  }
+  Json contact;
+  for (const LevelScalar& scalar : kLevelScalars) {
+    const bool of_contact = scalar.role != NumberRole::kSprings;
+    if (scalar.role == NumberRole::kObject) contact["cone"] = ConeName(system.contact.cone);
+    (of_contact ? contact : json)[KeyOf(scalar.name, scalar.unit)] = scalar.In(system);
+  }
+  json["contact"] = contact;
+  json["effects"] = Json::parse(EffectsToJson(system.effects));
+  return json;
+}
+
+}  // namespace
+
+std::string DescribeTwin(const Twin& twin) {
+  std::string text = fmt::format(
+      "object       {} points, {} interior particles, {} controllers{}\n"
+      "trained on   {}\n"
+      "controllers  {}\n"
+      "seed         {}\n"
+      "options      {}\n",
+      twin.points, twin.interior, twin.levels[0].system.controllers,
+      twin.order.size() > 0 ? ", a rod" : "", DescribeTraining(twin),
+      twin.controller_velocity ? "dashpots feel their velocity"
+                               : "dashpots take them as standing still (PhysTwin)",
+      twin.seed, twin.options_json);
+  for (std::size_t i = 0; i < twin.levels.size(); ++i) text += DescribeLevel(twin.levels[i], i);
+  return text;
+}
+
+Json TwinToJson(const Twin& twin) {
+  Json trained_on = Json::array(), levels = Json::array();
+  for (const TrainedOn& recording : twin.trained_on) {
+    trained_on.push_back({{"name", recording.name},
+                          {"hash", recording.hash},
+                          {"train_frames", recording.train_frames}});
+  }
+  for (std::size_t i = 0; i < twin.levels.size(); ++i) levels.push_back(ToJson(twin.levels[i], i));
+  return {{"kind", "twin"},
+          {"name", twin.name},
+          {"points", twin.points},
+          {"interior", twin.interior},
+          {"controllers", twin.levels[0].system.controllers},
+          {"rod", twin.order.size() > 0},
+          {"fps", twin.fps},
+          {"gravity_m_s2", std::vector<double>(twin.gravity.begin(), twin.gravity.end())},
+          {"controller_velocity", twin.controller_velocity},
+          {"trained_on", trained_on},
+          {"seed", twin.seed},
+          {"options", Json::parse(twin.options_json)},
+          {"levels", levels}};
+}
+
+}  // namespace physpring

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What episodes say, as a table and as JSON (docs/rollout.md).
+#ifndef PHYSPRING_REPORT_ROLLOUT_REPORT_H_
+#define PHYSPRING_REPORT_ROLLOUT_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "rollout/episode_files.h"
+
+namespace physpring {
+
+// The episodes of one task and one policy.
+struct JudgedPolicy {
+  std::string task, policy;
+  std::vector<EpisodeSummary> episodes;
+};
+
+// For each policy a row a level, then how the other levels agree with the lowest; with two policies
+// or more also how the levels rank them.
+std::string FormatTables(const std::vector<JudgedPolicy>& policies);
+std::string FormatJson(const std::vector<JudgedPolicy>& policies);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_REPORT_ROLLOUT_REPORT_H_

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/fits/dense_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/interrupted_work.h"
+#include "tests/support/same_twin.h"
+#include "tests/support/swung_rope.h"
+#include "trainer/bodies/candidates.h"
+#include "trainer/bodies/start_system.h"
+#include "twin/error.h"
+#include "twin/evaluate.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kParticles = 12, kFrames = 16;
+
+TrainOptions Options() {
+  TrainOptions options;
+  options.neighbours = {6};
+  options.epochs = 3;
+  return options;
+}
+
+// A rope that moves as a system of the fit's kind does, its springs unequal.
+FitData Swung(int recordings = 1, const std::vector<EffectValues>& effects = {}) {
+  FitData data;
+  for (int i = 0; i < recordings; ++i) {
+    Recording recording = SwungRope(kParticles, kFrames - i);
+    SpringMassSystem system =
+        MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6});
+    ScaleToSubsteps(1 / recording.fps, 12, 0.7, &system);
+    for (int e = 0; e < system.spring_count(); ++e) system.stiffness[e] *= 0.7 + 0.1 * (e % 4);
+    system.effects = effects;
+    MoveAs(system, true, &recording);
+    data.recordings.push_back(std::move(recording));
+    data.continuous_recording.push_back(i);
+  }
+  return data;
+}
+
+Twin Fit(const FitData& data, const TrainOptions& options) {
+  return RunToTheEnd([&](const Work& work) { return FitDense(data, options, work); });
+}
+
+double TrackError(const Twin& twin, const Recording& recording) {
+  const RecordingResult result = Evaluate(twin, recording, {});
+  return *MeansOverFrames(result.levels[0].direct, 1, recording.frame_count()).track.value;
+}
+
+// Mean distance of the points from where they are in frame 0, m.
+double MotionlessError(const Recording& recording) {
+  double sum = 0;
+  for (int t = 1; t < recording.frame_count(); ++t) {
+    sum += (recording.points[t] - recording.points[0]).colwise().norm().mean();
+  }
+  return sum / (recording.frame_count() - 1);
+}
+
+TEST(FitDense, ExplainsWhatASystemOfItsKindDid) {
+  const FitData data = Swung();
+  const Twin twin = Fit(data, Options());
+  EXPECT_LT(TrackError(twin, data.recordings[0]), 0.03 * MotionlessError(data.recordings[0]));
+  EXPECT_EQ(twin.points, kParticles);
+  EXPECT_EQ(twin.levels[0].system.controllers, 1);
+  EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
+}
+
+TEST(FitDense, KeepsTheEffectsThatItIsGiven) {
+  const std::vector<EffectValues> wind = {{"air_drag", Eigen::Vector4d(0.02, 3, 0, 0)}};
+  const FitData data = Swung(1, wind);
+  TrainOptions options = Options();
+  const auto error = [&] {
+    const Twin twin = Fit(data, options);
+    EXPECT_EQ(twin.levels[0].system.effects.size(), options.effects.size());
+    return TrackError(twin, data.recordings[0]);
+  };
+  const double without = error();
+  options.effects = wind;
+  EXPECT_LT(error(), 0.5 * without);
+}
+
+TEST(FitDense, TellsHowFarItIs) {
+  const FitData data = Swung();
+  WorkLog log;
+  RunLogged([&](const Work& work) { return FitDense(data, Options(), work); }, &log);
+  EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
+  EXPECT_GT(log.shares.front(), 0);
+  EXPECT_LE(log.shares.back(), 1);
+  EXPECT_GT(log.parts["choosing the model"], 0);
+  EXPECT_GT(log.parts["single springs (Gauss-Newton)"], 0);
+  ASSERT_EQ(log.reached.size(), 3u);
+  for (const Twin& twin : log.reached) EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
+}
+
+TEST(FitDense, StoppedAnywhereGivesTheSameBits) {
+  const FitData data = Swung();
+  const auto fit = [&](const Work& work) { return FitDense(data, Options(), work); };
+  const Twin whole = RunToTheEnd(fit);
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 1, &stops), whole);
+  EXPECT_GT(stops, 20);
+}
+
+// What moved as a chain that bends gets one, whose fit ends with free motions.
+TEST(FitDense, FitsAChainStoppedOrNot) {
+  Recording recording = SwungRope(8, kFrames);
+  recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
+  MoveAs(StartSystem(recording, CandidateBodies(recording, {}).back(), 8), true, &recording);
+  FitData data;
+  data.recordings.push_back(recording);
+  data.continuous_recording.push_back(0);
+  TrainOptions options;
+  options.epochs = 3;
+  const auto fit = [&](const Work& work) { return FitDense(data, options, work); };
+  WorkLog log;
+  const Twin whole = RunLogged(fit, &log);
+  EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
+  EXPECT_EQ(log.parts["search among free motions"], options.epochs);
+  EXPECT_GE(log.parts["descent of free motions"], 1);
+  EXPECT_LT(TrackError(whole, recording), 0.05 * MotionlessError(recording));
+  int stops = 0;
+  ExpectSameTwin(RunStopped(fit, 2, &stops), whole);
+  EXPECT_GT(stops, 10);
+}
+
+TEST(FitDense, GivesTheSameBitsForAnyNumberOfThreads) {
+  const FitData data = Swung(2);
+  TrainOptions options = Options();
+  const Twin one = Fit(data, options);
+  options.threads = 2;
+  ExpectSameTwin(Fit(data, options), one);
+}
+
+TEST(FitDense, OptimizerIsTheOneAskedFor) {
+  TrainOptions options = Options();
+  const FitData data = Swung();
+  for (const auto optimizer :
+       {TrainOptions::Optimizer::kGaussNewton, TrainOptions::Optimizer::kAdam}) {
+    options.optimizer = optimizer;
+    WorkLog log;
+    const Twin twin =
+        RunLogged([&](const Work& work) { return FitDense(data, options, work); }, &log);
+    const bool adam = optimizer == TrainOptions::Optimizer::kAdam;
+    EXPECT_EQ(log.parts["single springs (Adam)"] > 0, adam);
+    EXPECT_EQ(log.parts["single springs (Gauss-Newton)"] > 0, !adam);
+    EXPECT_LT(TrackError(twin, data.recordings[0]), 0.1 * MotionlessError(data.recordings[0]));
+  }
+}
+
+TEST(FitDense, SaysThatTooFewSubstepsWereGiven) {
+  FitData data = Swung();
+  data.recordings[0] = SwungRope(kParticles, 400);
+  TrainOptions options = Options();
+  options.substeps = 1;
+  try {
+    Fit(data, options);
+    ADD_FAILURE() << "one sub-step a frame went well";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "recording rope: the motion diverges with every start value tried; 1 sub-steps "
+                 "a frame are too few");
+  }
+}
+
+}  // namespace
+}  // namespace physpring

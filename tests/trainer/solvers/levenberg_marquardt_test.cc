@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/solvers/levenberg_marquardt.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace physpring {
+namespace {
+
+constexpr LevenbergMarquardtOptions kNoPrior{.precision = 0};
+
+// r_i = a exp(-b t_i) - 2 exp(-0.7 t_i): zero at (a, b) = (2, 0.7).
+std::optional<Eigen::VectorXd> Decay(const Eigen::VectorXd& x) {
+  const Eigen::ArrayXd t = Eigen::ArrayXd::LinSpaced(10, 0, 3);
+  return Eigen::VectorXd(x[0] * (-x[1] * t).exp() - 2 * (-0.7 * t).exp());
+}
+
+LevenbergMarquardtState Steps(const ResidualFunction& residuals, LevenbergMarquardtState state,
+                              const LevenbergMarquardtOptions& options, int most) {
+  for (int i = 0; i < most && !state.converged; ++i) {
+    state = LevenbergMarquardtStep(residuals, state, options);
+  }
+  return state;
+}
+
+TEST(LevenbergMarquardt, SolvesANonlinearProblem) {
+  const LevenbergMarquardtState end = Steps(Decay, {Eigen::Vector2d(0.5, -0.3)}, kNoPrior, 15);
+  EXPECT_NEAR(end.x[0], 2, 1e-6);
+  EXPECT_NEAR(end.x[1], 0.7, 1e-6);
+  EXPECT_LT(end.mean_square, 1e-12);
+}
+
+TEST(LevenbergMarquardt, GivesTheSameBitsForAnyNumberOfThreads) {
+  LevenbergMarquardtOptions options;
+  const LevenbergMarquardtState one = Steps(Decay, {Eigen::Vector2d(0.5, 0)}, options, 4);
+  options.threads = 2;
+  EXPECT_EQ(one.x, Steps(Decay, {Eigen::Vector2d(0.5, 0)}, options, 4).x);
+}
+
+TEST(LevenbergMarquardt, NoEntryMovesFurtherThanTheLongestStep) {
+  const auto far = [](const Eigen::VectorXd& x) {
+    return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(10, 0));
+  };
+  const auto state = LevenbergMarquardtStep(far, {Eigen::Vector2d(0, 0)}, kNoPrior);
+  EXPECT_NEAR(state.x[0], 1, 1e-9);
+}
+
+// r = x - (2, 2) with variance 4 at x = 0: (x - 2) / 4 + precision x = 0.
+TEST(LevenbergMarquardt, PriorCountsAgainstTheMisfitAtTheStart) {
+  const auto linear = [](const Eigen::VectorXd& x) {
+    return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(2, 2));
+  };
+  LevenbergMarquardtOptions options{.precision = 0.75, .longest_step = 10};
+  LevenbergMarquardtState start{Eigen::Vector2d(0, 0)};
+  start.damping = 1e-6;
+  const auto state = LevenbergMarquardtStep(linear, start, options);
+  EXPECT_NEAR(state.x[0], 0.5, 1e-5);
+  EXPECT_NEAR(state.x[1], 0.5, 1e-5);
+}
+
+TEST(LevenbergMarquardt, StaysWhereResidualsDoNotExist) {
+  const auto nowhere = [](const Eigen::VectorXd&) { return std::optional<Eigen::VectorXd>(); };
+  const auto state = LevenbergMarquardtStep(nowhere, {Eigen::Vector2d(1, 2)}, kNoPrior);
+  EXPECT_EQ(state.x, Eigen::Vector2d(1, 2));
+  EXPECT_TRUE(state.converged);
+}
+
+TEST(LevenbergMarquardt, KeepsOutOfWhereResidualsDoNotExist) {
+  const auto walled = [](const Eigen::VectorXd& x) {
+    return x[0] > 1 ? std::optional<Eigen::VectorXd>() : Decay(x);
+  };
+  const LevenbergMarquardtState start{Eigen::Vector2d(0.5, 0)};
+  const LevenbergMarquardtState end = Steps(walled, start, kNoPrior, 20);
+  EXPECT_LE(end.x[0], 1);
+  EXPECT_LT(walled(end.x)->squaredNorm(), 0.5 * walled(start.x)->squaredNorm());
+}
+
+TEST(LevenbergMarquardt, ParameterWhoseDifferenceDoesNotExistStaysInPlace) {
+  const auto walled = [](const Eigen::VectorXd& x) {
+    return x[0] > 1 ? std::optional<Eigen::VectorXd>() : Decay(x);
+  };
+  LevenbergMarquardtOptions options;
+  options.precision = 1e-9;
+  const auto state = LevenbergMarquardtStep(walled, {Eigen::Vector2d(1, 0)}, options);
+  EXPECT_NEAR(state.x[0], 1, 0.3);  // the prior alone moves it
+  EXPECT_NE(state.x[1], 0);
+}
+
+TEST(LevenbergMarquardt, DoesNotMoveWhereNothingIsBetter) {
+  // any move away from (1, 1) raises the residuals
+  const auto cusp = [](const Eigen::VectorXd& x) {
+    return std::optional<Eigen::VectorXd>(
+        Eigen::VectorXd::Constant(1, 1 + (x - Eigen::Vector2d(1, 1)).cwiseAbs().sum()));
+  };
+  const auto state = LevenbergMarquardtStep(cusp, {Eigen::Vector2d(1, 1)}, kNoPrior);
+  EXPECT_EQ(state.x, Eigen::Vector2d(1, 1));
+  EXPECT_TRUE(state.converged);
+}
+
+}  // namespace
+}  // namespace physpring

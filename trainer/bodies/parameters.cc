@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/bodies/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "trainer/bodies/logistic.h"
+
+namespace physpring {
+namespace {
+
+// Classes of about equal rest length: a new class begins where the sorted lengths jump by 3 %;
+// where that gives many classes (an irregular mesh), equally filled ones.
+std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
+  constexpr double kJump = 1.03;
+  constexpr int kMostClasses = 10;
+  constexpr int kEqualClasses = 6;
+  const int springs = static_cast<int>(length.size());
+  std::vector<int> sorted(springs), length_class(springs);
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](int i, int j) { return length[i] < length[j]; });
+  int last = 0;
+  for (int i = 0; i < springs; ++i) {
+    if (i > 0 && length[sorted[i]] > kJump * length[sorted[i - 1]]) ++last;
+    length_class[sorted[i]] = last;
+  }
+  if (last >= kMostClasses) {
+    for (int i = 0; i < springs; ++i) {
+      length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * kEqualClasses / springs);
+    }
+  }
+  return length_class;
+}
+
+std::vector<EffectValues> LastEffects(const SpringMassSystem& system, int count) {
+  return {system.effects.end() - count, system.effects.end()};
+}
+
+}  // namespace
+
+Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& options)
+    : base_(base),
+      options_(options),
+      effects_(LastEffects(base, options.free_effects), options.moment_unit),
+      springs_(base.spring_count()),
+      length_class_(options.length_classes ? LengthClasses(base.rest_length)
+                                           : std::vector<int>(springs_, 0)),
+      classes_(options.contact ? kFriction + 1 : kDrag + 1),
+      class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
+      effects_at_(classes_ + 2 * class_count_),
+      size_(effects_at_ + effects_.size()) {
+  const auto add = [this](bool wanted, int* offset) {
+    if (!wanted) return;
+    *offset = size_;
+    size_ += springs_;
+  };
+  add(options.spring_stiffness, &stiffness_);
+  add(options.spring_dashpot, &dashpot_);
+  add(options.spring_rest_length, &rest_length_);
+}
+
+Parameters::Kind Parameters::kind(int i) const {
+  const auto within = [&](int offset) {
+    return offset >= 0 && i >= offset && i < offset + springs_;
+  };
+  if (within(stiffness_)) return Kind::kStiffness;
+  if (within(dashpot_)) return Kind::kDashpot;
+  if (within(rest_length_)) return Kind::kRestLength;
+  return Kind::kGlobal;
+}
+
+bool Parameters::IsControllerSpring(int e) const {
+  return std::max(base_.springs[e][0], base_.springs[e][1]) >= base_.node_count();
+}
+
+std::vector<int> Parameters::WholeBodyEntries() const {
+  std::vector<int> entries;
+  for (int i = 0; i < classes_; ++i) {
+    const bool dashpot = i == kDashpot || i == kControllerDashpot;
+    if (!dashpot || options_.dashpots) entries.push_back(i);
+  }
+  for (int i = 0; i < effect_count(); ++i) {
+    if (!effects_.is_of_several(i)) entries.push_back(effects_at_ + i);
+  }
+  return entries;
+}
+
+std::vector<int> Parameters::AlongBodyEntries() const {
+  std::vector<int> entries;
+  for (int i = 0; i < effect_count(); ++i) {
+    if (effects_.is_of_several(i)) entries.push_back(effects_at_ + i);
+  }
+  return entries;
+}
+
+SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
+  SpringMassSystem system = base_;
+  for (int e = 0; e < springs_; ++e) {
+    const bool hand = IsControllerSpring(e);
+    const double own_stiffness = stiffness_ < 0 ? 0 : values[stiffness_ + e];
+    const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
+    system.stiffness[e] *= std::exp(values[hand ? kControllerStiffness : kStiffness] +
+                                    values[ClassStiffness(e)] + own_stiffness);
+    if (options_.dashpots) {
+      system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
+                                    values[ClassDashpot(e)] + own_dashpot);
+    }
+    if (rest_length_ >= 0) system.rest_length[e] *= std::exp(values[rest_length_ + e]);
+  }
+  system.drag *= std::exp(values[kDrag]);
+  if (options_.contact) {
+    system.contact.restitution =
+        Sigmoid(Logit(base_.contact.restitution, 1) + values[kRestitution], 1);
+    system.contact.friction = Sigmoid(Logit(base_.contact.friction, 2) + values[kFriction], 2);
+  }
+  const std::vector<EffectValues> moved =
+      effects_.Apply(values.segment(effects_at_, effects_.size()));
+  std::copy(moved.begin(), moved.end(), system.effects.end() - options_.free_effects);
+  return system;
+}
+
+Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringMassSystem& system,
+                                    const SystemGradient& gradient) const {
+  Eigen::VectorXd bar = Eigen::VectorXd::Zero(size_);
+  for (int e = 0; e < springs_; ++e) {
+    const bool hand = IsControllerSpring(e);
+    // forward: y = base exp(sum), so y_bar y is the derivative with respect to
+    // each
+    const double stiffness_bar = gradient.stiffness[e] * system.stiffness[e];
+    const double dashpot_bar = options_.dashpots ? gradient.dashpot[e] * system.dashpot[e] : 0;
+    bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
+    bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;
+    bar[ClassStiffness(e)] += stiffness_bar;
+    bar[ClassDashpot(e)] += dashpot_bar;
+    if (stiffness_ >= 0) bar[stiffness_ + e] = stiffness_bar;
+    if (dashpot_ >= 0) bar[dashpot_ + e] = dashpot_bar;
+    if (rest_length_ >= 0) {
+      bar[rest_length_ + e] = gradient.rest_length[e] * system.rest_length[e];
+    }
+  }
+  bar[kDrag] = gradient.drag * system.drag;
+  if (options_.contact) {
+    // forward: y = top / (1 + exp(-x)), dy/dx = y (1 - y / top)
+    const ContactPair<double>& surface = gradient.contact.surface;
+    const double e = system.contact.restitution, mu = system.contact.friction;
+    bar[kRestitution] = surface.restitution * e * (1 - e);
+    bar[kFriction] = surface.friction * mu * (1 - mu / 2);
+  }
+  bar.segment(effects_at_, effects_.size()) =
+      effects_.Adjoint(values.segment(effects_at_, effects_.size()),
+                       {gradient.effects.end() - options_.free_effects, gradient.effects.end()});
+  return bar;
+}
+
+}  // namespace physpring

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// What training moves: an unconstrained vector, and the map from it to a spring-mass system.
+//   stiffness_e   = base_e exp(global + class(e) + own_e)     global: apart for controller springs
+//   dashpot_e     = base_e exp(global + class(e) + own_e)
+//   rest_length_e = base_e exp(own_e)
+//   drag          = base exp(.)
+//   restitution   = 1 / (1 + exp(-.)),  friction = 2 / (1 + exp(-.))
+//   values of the base's last effects: effect_entries.h
+// Zero is the base system. Springs of about the same rest length are one class: on a regular mesh
+// the springs along, across and diagonal, which in a homogeneous body are alike. The `own` parts
+// are deviations of single springs, held small by the prior.
+#ifndef PHYSPRING_TRAINER_BODIES_PARAMETERS_H_
+#define PHYSPRING_TRAINER_BODIES_PARAMETERS_H_
+
+#include <vector>
+
+#include "trainer/bodies/effect_entries.h"
+#include "twin/simulator.h"
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+struct ParameterOptions {
+  bool spring_stiffness = true;  // single springs, else one factor for all
+  bool spring_dashpot = true;    // single dashpots, else one factor for all
+  bool spring_rest_length = false;
+  bool contact = false;        // restitution and friction of the ground
+  int free_effects = 0;        // so many of the base's effects, the last ones; the others stay
+  double moment_unit = 1;      // of those that are moments (effect_entries.h)
+  bool length_classes = true;  // else all springs are of one class
+  bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
+};
+
+class Parameters {
+ public:
+  Parameters(const SpringMassSystem& base, const ParameterOptions& options);
+
+  int size() const { return size_; }
+  const SpringMassSystem& base() const { return base_; }
+  // What each entry is: 0 global (effects' values, too), 1 own stiffness, 2 own dashpot, 3 own rest
+  // length.
+  enum class Kind { kGlobal, kStiffness, kDashpot, kRestLength };
+  Kind kind(int i) const;
+  // The entries of one value for the whole body: not of classes, single springs, or values of
+  // effects along the body, and none that does nothing.
+  std::vector<int> WholeBodyEntries() const;
+  // The entries of effects' values along the body.
+  std::vector<int> AlongBodyEntries() const;
+  // The entry of the ground's friction; -1: none.
+  int friction() const { return options_.contact ? kFriction : -1; }
+  // The first entry of the effects' values, and how many there are.
+  int effects() const { return effects_at_; }
+  int effect_count() const { return effects_.size(); }
+
+  SpringMassSystem Apply(const Eigen::VectorXd& values) const;
+
+  // d loss / d values, from the derivatives with respect to `system`, which is Apply(values).
+  Eigen::VectorXd Adjoint(const Eigen::VectorXd& values, const SpringMassSystem& system,
+                          const SystemGradient& gradient) const;
+
+ private:
+  bool IsControllerSpring(int e) const;
+  int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
+  int ClassDashpot(int e) const { return classes_ + class_count_ + length_class_[e]; }
+
+  SpringMassSystem base_;
+  ParameterOptions options_;
+  EffectEntries effects_;  // those that are free
+  int springs_;
+  std::vector<int> length_class_;                         // of each spring
+  int classes_;                                           // offset of the classes' stiffness ...
+  int class_count_;                                       // ... and dashpot after it
+  int effects_at_;                                        // offset of the effects' values
+  int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
+  int size_;
+  // offsets of the global parts; restitution and friction only where wanted
+  static constexpr int kStiffness = 0, kControllerStiffness = 1, kDashpot = 2,
+                       kControllerDashpot = 3, kDrag = 4, kRestitution = 5, kFriction = 6;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_BODIES_PARAMETERS_H_

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/data/fit_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+void ExpectSame(const std::string& path, const std::string& first_path, const char* what,
+                double value, double first_value) {
+  if (std::abs(value - first_value) <= 1e-6 * std::abs(first_value)) return;
+  throw Error(fmt::format("{}: has {} {}, but {} has {}; expected recordings of one object", path,
+                          value, what, first_path, first_value));
+}
+
+void ExpectSameObject(const std::string& path, const Recording& recording,
+                      const std::string& first_path, const Recording& first) {
+  ExpectSame(path, first_path, "points", recording.point_count(), first.point_count());
+  ExpectSame(path, first_path, "interior particles", recording.interior_count(),
+             first.interior_count());
+  ExpectSame(path, first_path, "controllers", recording.controller_count(),
+             first.controller_count());
+  ExpectSame(path, first_path, "frames a second", recording.fps, first.fps);
+}
+
+// Whether a particle is seen after frame 0, in the frames for fitting.
+bool SeesMotion(const Recording& recording) {
+  for (int t = 1; t < recording.train_frames; ++t) {
+    if (recording.points[static_cast<std::size_t>(t)].array().isFinite().any()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
+  FitData data;
+  for (const RecordingEntry& entry : entries) {
+    data.recordings.push_back(ReadRecording(entry.path));
+    ExpectSameObject(entry.path, data.recordings.back(), entries[0].path, data.recordings[0]);
+    if (!SeesMotion(data.recordings.back())) {
+      throw Error(fmt::format("{}: no point is seen in frames 1 to {}: there is nothing to fit",
+                              entry.path, data.recordings.back().train_frames - 1));
+    }
+    const int own = -static_cast<int>(data.recordings.size());
+    data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
+                                                                        : own);
+  }
+  return data;
+}
+
+}  // namespace physpring

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef PHYSPRING_TRAINER_DATA_FIT_DATA_H_
+#define PHYSPRING_TRAINER_DATA_FIT_DATA_H_
+
+#include <vector>
+
+#include "twin/dataset.h"
+#include "twin/recording.h"
+
+namespace physpring {
+
+// Recordings of one object to fit; all with the same numbers of points, interior and controllers.
+struct FitData {
+  std::vector<Recording> recordings;
+  std::vector<int>
+      continuous_recording;  // of each: recordings cut from the same run share a number
+};
+
+// Reads the recordings that are listed (dataset.h). Those of which nothing is said count as
+// continuous recordings of their own. Throws Error if one cannot be read or sees nothing after
+// frame 0 of what is for fitting, or naming both files if two differ in points, interior particles,
+// controllers or frame rate.
+FitData ReadFitData(const std::vector<RecordingEntry>& entries);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DATA_FIT_DATA_H_

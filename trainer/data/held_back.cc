@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/data/held_back.h"
+
+#include <algorithm>
+#include <set>
+
+namespace physpring {
+namespace {
+
+constexpr int kParts = 8;          // of a recording's fit frames ...
+constexpr int kOneHeldBackOf = 4;  // ... of which one in so many is held back
+
+// Whether frame 1 ... `last` is held back.
+bool IsHeldBack(int frame, int last) {
+  if (last < kParts) return frame == last;
+  const int part = (frame - 1) * kParts / last;
+  return part % kOneHeldBackOf == kOneHeldBackOf - 1;
+}
+
+// The uses of a recording's fit frames.
+SplitRecording SplitFitFrames(const Recording& recording, FrameUse held_back, FrameUse others) {
+  SplitRecording split = UseAll(recording, FrameUse::kNone);
+  const int last = recording.train_frames - 1;
+  for (int frame = 1; frame <= last; ++frame) {
+    split.use[static_cast<std::size_t>(frame)] = IsHeldBack(frame, last) ? held_back : others;
+  }
+  return split;
+}
+
+// One in which all fit frames have that use.
+SplitRecording UseFitFrames(const Recording& recording, FrameUse use) {
+  return SplitFitFrames(recording, use, use);
+}
+
+std::vector<Episode> EpisodesOf(const std::vector<SplitRecording>& recordings) {
+  std::vector<Episode> episodes;
+  for (const SplitRecording& split : recordings) {
+    episodes.push_back(split.First(split.recording->train_frames));
+  }
+  return episodes;
+}
+
+}  // namespace
+
+std::vector<Episode> HeldBack::FitEpisodes() const { return EpisodesOf(fit); }
+
+std::vector<Episode> HeldBack::JudgedEpisodes() const { return EpisodesOf(judged); }
+
+std::vector<Episode> FitEpisodes(const FitData& data, int most) {
+  std::vector<Episode> episodes;
+  for (const Recording& recording : data.recordings) {
+    episodes.push_back({&recording, recording.train_frames});
+  }
+  return SpreadEvenly(episodes, most);
+}
+
+std::vector<bool> HeldBackRuns(const FitData& data) {
+  std::vector<bool> held_back(data.recordings.size(), false);
+  const std::set<int> runs(data.continuous_recording.begin(), data.continuous_recording.end());
+  if (runs.size() < kOneHeldBackOf) return held_back;
+  int run_index = 0;
+  std::set<int> held;
+  for (int run : runs) {
+    if (run_index++ % kOneHeldBackOf == kOneHeldBackOf / 2) held.insert(run);
+  }
+  for (std::size_t i = 0; i < held_back.size(); ++i) {
+    held_back[i] = held.contains(data.continuous_recording[i]);
+  }
+  return held_back;
+}
+
+HeldBack HoldBack(const FitData& data, int most) {
+  HeldBack split;
+  std::vector<const Recording*> fit, judged;
+  const std::vector<bool> held_back = HeldBackRuns(data);
+  for (std::size_t i = 0; i < data.recordings.size(); ++i) {
+    (held_back[i] ? judged : fit).push_back(&data.recordings[i]);
+  }
+  if (judged.empty()) {
+    for (const Recording* recording : SpreadEvenly(fit, most)) {
+      // a single frame is on both sides
+      const bool single = recording->train_frames == 2;
+      split.fit.push_back(
+          SplitFitFrames(*recording, single ? FrameUse::kFit : FrameUse::kNone, FrameUse::kFit));
+      split.judged.push_back(SplitFitFrames(*recording, FrameUse::kHeld, FrameUse::kFit));
+    }
+    return split;
+  }
+  for (const Recording* recording : SpreadEvenly(fit, most)) {
+    split.fit.push_back(UseFitFrames(*recording, FrameUse::kFit));
+  }
+  for (const Recording* recording : SpreadEvenly(judged, most)) {
+    split.judged.push_back(UseFitFrames(*recording, FrameUse::kHeld));
+  }
+  return split;
+}
+
+}  // namespace physpring

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a choice (neighbour count, start values) is fitted on and what it is judged by: part of the
+// fit frames is held back. Frames from train_frames on are never touched.
+#ifndef PHYSPRING_TRAINER_DATA_HELD_BACK_H_
+#define PHYSPRING_TRAINER_DATA_HELD_BACK_H_
+
+#include <vector>
+
+#include "trainer/data/episode.h"
+#include "trainer/data/fit_data.h"
+
+namespace physpring {
+
+struct HeldBack {
+  std::vector<SplitRecording> fit;     // the frames to fit; the others have no use
+  std::vector<SplitRecording> judged;  // what is held back, and the frames to fit between
+
+  // All fit frames of the recordings; *this must outlive them. Judged are those that are held back.
+  std::vector<Episode> FitEpisodes() const;
+  std::vector<Episode> JudgedEpisodes() const;
+};
+
+// With four or more continuous runs, whole runs are held back (a quarter of them, spread evenly);
+// otherwise the fourth and the last eighth of each recording's fit frames. At most `most`
+// recordings on each side, spread evenly. `data` must outlive the result.
+HeldBack HoldBack(const FitData& data, int most);
+
+// Of each recording, whether it is of a run that is held back whole: a quarter of the runs, spread
+// evenly, and none of fewer than four.
+std::vector<bool> HeldBackRuns(const FitData& data);
+
+// At most `most` of them, spread evenly.
+template <class T>
+std::vector<T> SpreadEvenly(const std::vector<T>& all, int most) {
+  const int count = static_cast<int>(all.size());
+  if (count <= most) return all;
+  std::vector<T> some;
+  for (int i = 0; i < most; ++i) some.push_back(all[(2 * i + 1) * count / (2 * most)]);
+  return some;
+}
+
+// All fit frames of at most `most` recordings, spread evenly.
+std::vector<Episode> FitEpisodes(const FitData& data, int most);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_DATA_HELD_BACK_H_

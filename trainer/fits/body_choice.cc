@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/fits/body_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "trainer/bodies/candidates.h"
+#include "trainer/data/held_back.h"
+#include "trainer/motion/observer.h"
+#include "trainer/motion/track_error.h"
+#include "trainer/solvers/parallel.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kMostChoiceRecordings = 4;  // that start values are sought on
+// What is fitted in a round under which of kObserverGains, and how many go on from it with either
+// treatment of the controllers' velocity (what that is worth shows with single springs).
+struct Round {
+  const char* name;
+  double first_part, last_part;  // of the choice's work
+  int first_gain, last_gain;
+  int most_steps;  // with each gain
+  int left_of_each;
+};
+constexpr std::array<Round, 3> kRounds = {
+    {{"far", 0, 0.5, 0, 1, 5, 3}, {"near", 0.5, 0.9, 2, 3, 6, 1}, {"springs", 0.9, 1, 3, 3, 6, 1}}};
+constexpr const Round& kSpringRound = kRounds[2];
+constexpr int kChoiceConjugateGradients = 20;
+// Changes of the friction's factor that are tried (on a ground), and of an effect's.
+constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
+constexpr std::array<double, 3> kEffectChanges = {0, -2, 2};
+
+// A candidate on its way through the rounds.
+struct Contender {
+  ChosenBody model;
+  Eigen::VectorXd springs = {};  // fitted in the last round
+  double score = kInfinity;      // of the last round it was in, m
+};
+
+// A contender in the middle of a round.
+struct RoundState {
+  Contender contender;
+  int gain, iteration = 0;  // gain: an index of kObserverGains
+  double damping = 0, mean_square = 0;
+
+  template <class Visitor>
+  void Visit(Visitor&& visit) {
+    ChosenBody& model = contender.model;
+    visit(model.start_substeps, model.start, model.factors, contender.springs, contender.score,
+          gain, iteration, damping, mean_square);
+  }
+};
+
+// The factors that a search begins from.
+std::vector<Eigen::VectorXd> Starts(const Parameters& factors, const BodyKind& kind) {
+  std::vector<Eigen::VectorXd> starts;
+  const int searched = kind.SearchedEffect(factors);
+  for (double friction : kFrictions) {
+    for (double change : kEffectChanges) {
+      if (factors.friction() < 0 && friction != 0) continue;
+      if (searched < 0 && change != 0) continue;
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(factors.size());
+      if (factors.friction() >= 0) x[factors.friction()] = friction;
+      if (searched >= 0) x[searched] = change;
+      starts.push_back(x);
+    }
+  }
+  return starts;
+}
+
+// A round that some contenders are in: what they are fitted to, and how they are judged.
+class RoundOfChoice {
+ public:
+  RoundOfChoice(const Round& round, bool by_free_motions, const HeldBack& held_back,
+                const Recording& first, const TrainOptions& options)
+      : round_(round),
+        by_free_motions_(by_free_motions),
+        held_back_(held_back),
+        first_(first),
+        options_(options) {}
+
+  // Takes a contender through the round; `threads` tells how many threads it may use now.
+  Contender Run(const Contender& contender, const std::function<int()>& threads,
+                const Work& work) const {
+    const RoundState start{contender, round_.first_gain};
+    const bool fits_springs = is_last() && contender.model.body.kind->has_single_springs();
+    return work
+        .Follow(start,
+                [&](RoundState* state) {
+                  TrainOptions options = options_;
+                  options.threads = threads();
+                  return fits_springs ? StepSprings(options, state)
+                                      : StepCommonFactors(options, state);
+                })
+        .contender;
+  }
+
+ private:
+  bool is_last() const { return &round_ == &kSpringRound; }
+  // In the last round a body without single springs has free motions fitted, where others have
+  // single springs.
+  int LastGain(const Body& body) const {
+    return !body.kind->has_single_springs() && is_last() ? kLastGain : round_.last_gain;
+  }
+  StepReport StepCommonFactors(const TrainOptions& options, RoundState* state) const;
+  StepReport StepSprings(const TrainOptions& options, RoundState* state) const;
+  StepReport Judge(const SpringMassSystem& system, RoundState* state) const;
+  double TrackError(const SpringMassSystem& system, const Body& body, double gain) const;
+  void SearchStart(ChosenBody* model) const;
+
+  const Round& round_;
+  bool by_free_motions_;  // whether a body in the round has no single springs
+  const HeldBack& held_back_;
+  const Recording& first_;
+  const TrainOptions& options_;
+};
+
+// Among a few start systems from soft to stiff, slippery to rough, the one that predicts best.
+void RoundOfChoice::SearchStart(ChosenBody* model) const {
+  double least = kInfinity;
+  for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
+    const Parameters factors = ChosenBody{model->body, substeps, {}, {}}.ParametersOf(first_);
+    MotionProblem::Options follow = FollowOptions(first_, model->body, options_);
+    follow.rollout.observer_gain = kObserverGains[0];
+    MotionProblem problem(factors, held_back_.FitEpisodes(), follow);
+    for (const Eigen::VectorXd& x : Starts(factors, *model->body.kind)) {
+      if (model->start_substeps == 0) *model = {model->body, substeps, x, x};
+      const auto r = problem.Residuals(x);
+      if (!r || r->squaredNorm() >= least) continue;
+      least = r->squaredNorm();
+      *model = {model->body, substeps, x, x};
+    }
+  }
+}
+
+// The error of held-back frames, under an observer of this gain.
+double RoundOfChoice::TrackError(const SpringMassSystem& system, const Body& body,
+                                 double gain) const {
+  RolloutOptions options = FollowOptions(first_, body, options_).rollout;
+  options.observer_gain = gain;
+  return GeometricTrackError(system, held_back_.JudgedEpisodes(), FrameUse::kHeld, options);
+}
+
+StepReport RoundOfChoice::StepCommonFactors(const TrainOptions& options, RoundState* state) const {
+  ChosenBody& model = state->contender.model;
+  if (model.start_substeps == 0) SearchStart(&model);
+  if (state->iteration == 0) state->damping = 1e-2;
+  const LevenbergMarquardtState factors = StepFactors(model, held_back_.FitEpisodes(), options,
+                                                      kObserverGains[state->gain], state->damping);
+  model.factors = factors.x;
+  state->damping = factors.damping;
+  ++state->iteration;
+  const int gains = LastGain(model.body) - round_.first_gain + 1;
+  const double of_gain = static_cast<double>(state->iteration) / round_.most_steps;
+  StepReport report{false, (state->gain - round_.first_gain + of_gain) / gains,
+                    fmt::format("{}, start values: {:.3f} mm", model.body.Label(),
+                                PointMillimetres(factors.mean_square))};
+  if (state->iteration < round_.most_steps && !factors.converged) return report;
+  state->iteration = 0;
+  if (++state->gain <= LastGain(model.body)) return report;
+  return Judge(model.System(first_), state);
+}
+
+StepReport RoundOfChoice::StepSprings(const TrainOptions& options, RoundState* state) const {
+  const ChosenBody& model = state->contender.model;
+  const Parameters parameters = SpringFactors(model.System(first_), first_, *model.body.kind);
+  Eigen::VectorXd& springs = state->contender.springs;
+  if (state->iteration == 0) {
+    springs = Eigen::VectorXd::Zero(parameters.size());
+    state->damping = 1e-3;
+  }
+  MotionProblem::Options follow = FollowOptions(first_, model.body, options);
+  follow.rollout.growth_limit = kInfinity;
+  follow.rollout.observer_gain = kObserverGains[state->gain];
+  MotionProblem problem(parameters, held_back_.FitEpisodes(), follow);
+  GaussNewtonOptions prior = SpringPrior(parameters);
+  prior.conjugate_gradient_steps = kChoiceConjugateGradients;
+  const GaussNewtonState before{springs, state->damping, state->mean_square, false};
+  const GaussNewtonState after = GaussNewtonStep(&problem, before, prior);
+  springs = after.x;
+  state->damping = after.damping;
+  state->mean_square = after.mean_square;
+  const bool stuck = IsStuck(before, after, state->iteration == 0);
+  if (++state->iteration < round_.most_steps && !stuck) {
+    return {false, static_cast<double>(state->iteration) / round_.most_steps,
+            fmt::format("{}, single springs: {:.3f} mm", model.body.Label(),
+                        PointMillimetres(after.mean_square))};
+  }
+  return Judge(parameters.Apply(springs), state);
+}
+
+// The score of a contender that has been fitted.
+StepReport RoundOfChoice::Judge(const SpringMassSystem& system, RoundState* state) const {
+  const Body& body = state->contender.model.body;
+  double& score = state->contender.score;
+  const auto error = [&](int gain) { return TrackError(system, body, kObserverGains[gain]); };
+  if (!is_last()) {
+    score = error(round_.last_gain);
+  } else if (by_free_motions_) {  // fitted to free motions, it follows an observer worse
+    score = error(kLastGain);
+  } else {  // bodies whose motions are chaotic do well only under an observer
+    score = 0.5 * (error(round_.last_gain) + error(kLastGain));
+  }
+  StepReport report{true, 1,
+                    fmt::format("{}: {:.3f} mm on held-back frames", body.Label(), 1e3 * score)};
+  if (is_last()) score *= body.kind->handicap();
+  return report;
+}
+
+// The contenders that go on after a round, in their old order.
+std::vector<Contender> Left(const std::vector<Contender>& all, int of_each) {
+  std::vector<std::size_t> order(all.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return all[i].score < all[j].score; });
+  std::array<int, 2> left = {};  // with and without the controllers' velocity
+  std::erase_if(order, [&](std::size_t i) {
+    const bool velocity = all[i].model.body.controller_velocity;
+    return ++left[velocity ? 0 : 1] > of_each || !std::isfinite(all[i].score);
+  });
+  std::sort(order.begin(), order.end());
+  std::vector<Contender> going_on;
+  for (std::size_t i : order) going_on.push_back(all[i]);
+  return going_on;
+}
+
+void ExpectSome(const std::vector<Contender>& contenders, const Recording& first,
+                const TrainOptions& options) {
+  if (!contenders.empty()) return;
+  throw Error(fmt::format(
+      "recording {}: the motion diverges with every start value tried{}", first.name,
+      options.substeps > 0 ? fmt::format("; {} sub-steps a frame are too few", options.substeps)
+                           : ", even with a stable sub-step; are its positions in metres?"));
+}
+
+}  // namespace
+
+BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work& work) {
+  const Recording& first = data.recordings.at(0);
+  const HeldBack held_back = HoldBack(data, kMostChoiceRecordings);
+  TrainOptions options = asked;
+  options.single_precision = true;
+  std::vector<Contender> contenders;
+  for (const Body& body : CandidateBodies(first, options)) {
+    contenders.push_back({{body, 0, {}, {}}});
+  }
+  StartSystem(first, contenders[0].model.body, kSoftestStart);  // throws where there is none
+
+  for (const Round& round : kRounds) {
+    const bool by_free_motions =
+        std::any_of(contenders.begin(), contenders.end(),
+                    [](const auto& one) { return !one.model.body.kind->has_single_springs(); });
+    const RoundOfChoice in_round(round, by_free_motions, held_back, first, options);
+    const Work of_round = work.Stretch(round.name, round.first_part, round.last_part);
+    const int count = static_cast<int>(contenders.size());
+    ParallelShared(count, options.threads, [&](int i, const std::function<int()>& threads) {
+      contenders[i] = in_round.Run(contenders[i], threads, of_round.Item(i, count));
+    });
+    const std::vector<Contender> left = Left(contenders, round.left_of_each);
+    ExpectSome(left, first, options);
+    contenders = left;
+    if (contenders.size() == 1) break;  // there is nothing left to choose
+  }
+  const auto best =
+      std::min_element(contenders.begin(), contenders.end(),
+                       [](const auto& a, const auto& b) { return a.score < b.score; });
+  return {best->model, best->springs};
+}
+
+}  // namespace physpring

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/motion/lifted_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "trainer/solvers/parallel.h"
+#include "twin/hierarchy.h"
+
+namespace physpring {
+namespace {
+
+// Sub-step as a part of the largest stable one, at most, where the number of sub-steps is given.
+constexpr double kLargestSafety = 0.95;
+
+// What a rollout of the level's nodes, and, where there is one, an observer of it need of the
+// recording.
+Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool observed) {
+  Recording carried;
+  carried.name = recording.name;
+  carried.controllers = recording.controllers;
+  carried.fps = recording.fps;
+  carried.gravity = recording.gravity;
+  carried.ground = recording.ground;
+  const int particles = recording.particle_count(), controllers = recording.controller_count();
+  const Points nodes = AverageOverMembers(twin, level, recording.start.leftCols(particles));
+  carried.start.resize(3, nodes.cols() + controllers);
+  carried.start << nodes, recording.start.rightCols(controllers);
+  carried.velocity = AverageOverMembers(twin, level, recording.velocity);
+  if (!observed) return carried;
+  // measured where all of a node's members are
+  for (const Points& measured : recording.points) {
+    Points all = Points::Constant(3, particles, std::numeric_limits<double>::quiet_NaN());
+    all.leftCols(measured.cols()) = measured;
+    carried.points.push_back(AverageOverMembers(twin, level, all));
+  }
+  return carried;
+}
+
+}  // namespace
+
+LiftedMotion::LiftedMotion(std::vector<Episode> episodes, const Options& options)
+    : episodes_(std::move(episodes)), options_(options) {
+  options_.rollout.threads = ThreadsOfOne();
+}
+
+LiftedMotion::LiftedMotion(const Twin& twin, int level, std::vector<Episode> episodes,
+                           const Options& options)
+    : LiftedMotion(std::move(episodes), options) {
+  for (const Episode& episode : episodes_) {
+    const Recording& recording = *episode.recording;
+    carried_.push_back(ForNodes(twin, level, recording, options.rollout.observer_gain > 0));
+    lifts_.emplace_back(twin, level, recording.start.leftCols(recording.particle_count()));
+  }
+}
+
+LiftedMotion::Substeps LiftedMotion::SubstepsOf(const SpringMassSystem& system) const {
+  if (options_.rollout.substeps > 0) return Substeps(episodes_.size(), options_.rollout.substeps);
+  const StabilityBound bound = ComputeStabilityBound(system);
+  Substeps substeps;
+  for (const Episode& episode : episodes_) {
+    const double fps = episode.recording->fps;
+    const int needed = StableSubsteps(bound, 1 / fps, options_.safety);
+    if (needed > options_.most_substeps || needed * fps > options_.most_rate) return {};
+    substeps.push_back(std::max(needed, static_cast<int>(std::ceil(options_.least_rate / fps))));
+  }
+  return substeps;
+}
+
+bool LiftedMotion::AreEnough(const Substeps& substeps, const SpringMassSystem& system) const {
+  const StabilityBound bound = ComputeStabilityBound(system);
+  for (std::size_t e = 0; e < substeps.size(); ++e) {
+    const double fps = episodes_[e].recording->fps;
+    if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps[e]) return false;
+    if (StableSubsteps(bound, 1 / fps, options_.safety) * fps > options_.most_rate) return false;
+  }
+  return true;
+}
+
+std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMassSystem& system,
+                                                         const Substeps& substeps) const {
+  const Episode& episode = episodes_[e];
+  Motion motion;
+  if (episode.frames < 2) return motion;
+  RolloutOptions options = options_.rollout;
+  options.substeps = substeps[e];
+  const Recording* recording = carried_.empty() ? episode.recording : &carried_[e];
+  motion.rollout = RollOut(system, {recording, episode.frames, episode.use}, options);
+  if (motion.rollout->diverged()) return {};
+  if (lifts_.empty()) return motion;
+  motion.lifted.resize(episode.frames);
+  ParallelFor(episode.frames, ThreadsOfOne(), [&](int frame) {
+    motion.lifted[frame] = lifts_[e].Apply(motion.rollout->positions()[frame]);
+  });
+  return motion;
+}
+
+std::optional<std::vector<LiftedMotion::Motion>> LiftedMotion::Run(const SpringMassSystem& system,
+                                                                   const Substeps& substeps) const {
+  if (substeps.empty()) return {};
+  std::vector<std::optional<Motion>> motions(episodes_.size());
+  ParallelFor(episode_count(), options_.threads,
+              [&](int e) { motions[e] = RunOne(e, system, substeps); });
+  std::vector<Motion> all;
+  for (auto& motion : motions) {
+    if (!motion) return {};
+    all.push_back(std::move(*motion));
+  }
+  return all;
+}
+
+SystemGradient LiftedMotion::Adjoint(const SpringMassSystem& system,
+                                     const std::vector<Motion>& motions,
+                                     const ParticlesBar& particles_bar, int* cuts) const {
+  std::vector<std::optional<RolloutAdjoint>> adjoints(episodes_.size());
+  ParallelFor(episode_count(), options_.threads, [&](int e) {
+    Rollout* rollout = motions[e].rollout.get();
+    if (!rollout) return;
+    std::vector<Points> bars = particles_bar(e);
+    if (!lifts_.empty()) {
+      ParallelFor(static_cast<int>(bars.size()), ThreadsOfOne(), [&](int frame) {
+        bars[frame] = lifts_[e].Adjoint(rollout->positions()[frame], bars[frame]);
+      });
+    }
+    adjoints[e] = rollout->Adjoint(bars);
+  });
+  SystemGradient sum(system);
+  if (cuts) *cuts = 0;
+  for (const auto& adjoint : adjoints) {
+    if (!adjoint) continue;
+    sum += adjoint->gradient;
+    if (cuts) *cuts += adjoint->cuts;
+  }
+  return sum;
+}
+
+std::vector<Points> LiftedMotion::ZerosLike(std::vector<Points> frames) {
+  for (Points& frame : frames) frame.setZero();
+  return frames;
+}
+
+}  // namespace physpring

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rollouts of one level of a twin on several recordings, and the particles of level 0 that the
+// level's nodes carry along (lift.h): what a level is fitted by. The nodes of level 0 are the
+// particles themselves.
+#ifndef PHYSPRING_TRAINER_MOTION_LIFTED_MOTION_H_
+#define PHYSPRING_TRAINER_MOTION_LIFTED_MOTION_H_
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "trainer/motion/rollout.h"
+#include "twin/lift.h"
+#include "twin/stability.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+class LiftedMotion {
+ public:
+  struct Options {
+    RolloutOptions rollout;       // substeps: 0 = from the stability bound
+    double safety = kStepSafety;  // sub-step as a part of the largest stable one
+    int most_substeps = 2000;     // a frame; a stiffer system cannot be rolled out
+    double least_rate = 0;        // sub-steps a second, at least ...
+    double most_rate = std::numeric_limits<double>::infinity();  // ... and as most_substeps
+    int threads = 1;
+  };
+
+  // Of level 0, whose nodes are the particles. The recordings must outlive this.
+  LiftedMotion(std::vector<Episode> episodes, const Options& options);
+
+  // `level` needs its topology, masses and reference positions; parameters come with each call. The
+  // recordings must outlive this.
+  LiftedMotion(const Twin& twin, int level, std::vector<Episode> episodes, const Options& options);
+
+  // The motion of one episode.
+  struct Motion {
+    std::unique_ptr<Rollout> rollout;  // null where there is nothing to predict
+    std::vector<Points> lifted;        // of each frame; empty at level 0
+
+    const std::vector<Points>& particles() const {  // 3 x particles, m, of each frame
+      return lifted.empty() && rollout ? rollout->positions() : lifted;
+    }
+  };
+
+  int episode_count() const { return static_cast<int>(episodes_.size()); }
+  const Episode& episode(int e) const { return episodes_[static_cast<std::size_t>(e)]; }
+  int threads() const { return options_.threads; }
+
+  using Substeps = std::vector<int>;  // a frame, of each episode
+
+  // As many as the system needs; none if that is too many.
+  Substeps SubstepsOf(const SpringMassSystem& system) const;
+  // Whether the system is stable with these, and needs no more than may be.
+  bool AreEnough(const Substeps& substeps, const SpringMassSystem& system) const;
+
+  // Nothing where the rollout diverges.
+  std::optional<Motion> RunOne(int e, const SpringMassSystem& system,
+                               const Substeps& substeps) const;
+  // Of all episodes. Nothing where a rollout diverges or there are no `substeps`.
+  std::optional<std::vector<Motion>> Run(const SpringMassSystem& system,
+                                         const Substeps& substeps) const;
+
+  // Derivatives with respect to the system that `motions` were made with, from those with respect
+  // to the particles of each episode's frames. `cuts` (may be null): how often the adjoint was cut
+  // (rollout.h).
+  using ParticlesBar = std::function<std::vector<Points>(int episode)>;
+  SystemGradient Adjoint(const SpringMassSystem& system, const std::vector<Motion>& motions,
+                         const ParticlesBar& particles_bar, int* cuts) const;
+
+  static std::vector<Points> ZerosLike(std::vector<Points> frames);
+
+ private:
+  // Where there is one episode only, its parts run in parallel.
+  int ThreadsOfOne() const { return episodes_.size() == 1 ? options_.threads : 1; }
+
+  std::vector<Episode> episodes_;  // as measured
+  Options options_;
+  // of a coarser level:
+  std::vector<Recording> carried_;  // the start and the controllers, for the level's nodes
+  std::vector<Lift> lifts_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_MOTION_LIFTED_MOTION_H_

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/motion/motion_problem.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "trainer/solvers/parallel.h"
+
+namespace physpring {
+
+MotionProblem::MotionProblem(SystemMap map, std::vector<Episode> episodes, const Options& options)
+    : map_(std::move(map)),
+      motion_(std::move(episodes), options),
+      difference_(options.difference),
+      keep_substeps_(options.keep_substeps) {
+  CountResiduals();
+}
+
+MotionProblem::MotionProblem(SystemMap map, LiftedMotion motion, double difference)
+    : map_(std::move(map)), motion_(std::move(motion)), difference_(difference) {
+  CountResiduals();
+}
+
+void MotionProblem::CountResiduals() {
+  for (int e = 0; e < motion_.episode_count(); ++e) {
+    std::size_t seen = 0;
+    ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int, int) { ++seen; });
+    offset_.push_back(offset_.back() + 3 * seen);
+  }
+}
+
+bool MotionProblem::FixSubsteps(const Eigen::VectorXd& x) {
+  substeps_ = motion_.SubstepsOf(SystemAt(x));
+  return !substeps_.empty();
+}
+
+std::optional<Eigen::VectorXd> MotionProblem::RollOutAll(
+    const SpringMassSystem& system, const LiftedMotion::Substeps& substeps,
+    std::vector<LiftedMotion::Motion>* motions) const {
+  if (substeps.empty()) return {};
+  const int episodes = motion_.episode_count();
+  Eigen::VectorXd residuals(offset_.back());
+  std::vector<char> diverged(offset_.size(), 0);
+  if (motions) motions->resize(offset_.size() - 1);
+  ParallelFor(episodes, motion_.threads(), [&](int e) {
+    auto motion = motion_.RunOne(e, system, substeps);
+    diverged[e] = motion ? 0 : 1;
+    if (!motion) return;
+    const std::vector<Points>& particles = motion->particles();
+    const std::vector<Points>& measured = motion_.episode(e).recording->points;
+    std::size_t row = offset_[e];
+    ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int frame, int point) {
+      residuals.segment<3>(row) = particles[frame].col(point) - measured[frame].col(point);
+      row += 3;
+    });
+    if (motions) (*motions)[e] = std::move(*motion);
+  });
+  if (std::any_of(diverged.begin(), diverged.end(), [](char d) { return d != 0; })) return {};
+  return residuals;
+}
+
+std::optional<Eigen::VectorXd> MotionProblem::Residuals(const Eigen::VectorXd& x) {
+  const SpringMassSystem system = SystemAt(x);
+  if (!keep_substeps_) return RollOutAll(system, motion_.SubstepsOf(system), nullptr);
+  if (!motion_.AreEnough(substeps_, system)) return {};
+  return RollOutAll(system, substeps_, nullptr);
+}
+
+std::optional<Eigen::VectorXd> MotionProblem::Linearise(const Eigen::VectorXd& x) {
+  x_ = x;
+  system_ = SystemAt(x);
+  substeps_ = motion_.SubstepsOf(system_);
+  auto residuals = RollOutAll(system_, substeps_, &motions_);
+  if (residuals) r_ = *residuals;
+  return residuals;
+}
+
+Eigen::VectorXd MotionProblem::JacobianTimes(const Eigen::VectorXd& v) {
+  const double step = difference_ / std::max(1e-300, v.cwiseAbs().maxCoeff());
+  const auto moved = RollOutAll(SystemAt(x_ + step * v), substeps_, nullptr);
+  if (!moved) return Eigen::VectorXd::Zero(r_.size());
+  return (*moved - r_) / step;
+}
+
+Eigen::VectorXd MotionProblem::JacobianTransposedTimes(const Eigen::VectorXd& u) {
+  const auto particles_bar = [&](int e) {
+    std::vector<Points> bars = LiftedMotion::ZerosLike(motions_[e].particles());
+    std::size_t row = offset_[e];
+    ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int frame, int point) {
+      bars[frame].col(point) = u.segment<3>(row);
+      row += 3;
+    });
+    return bars;
+  };
+  return map_.Adjoint(x_, system_, motion_.Adjoint(system_, motions_, particles_bar, &cuts_));
+}
+
+}  // namespace physpring

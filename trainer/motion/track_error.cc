@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/motion/track_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "twin/metrics.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kLeastError = 1e-9;  // m
+
+}  // namespace
+
+FrameTrack TrackOf(const Episode& episode, FrameUse use, const std::vector<Points>& particles) {
+  const std::vector<Points>& measured = episode.recording->points;
+  std::vector<int> nodes(static_cast<std::size_t>(measured[0].cols()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  FrameTrack track;
+  for (int frame = 1; frame < episode.frames; ++frame) {
+    if (episode.UseOf(frame) != use) continue;
+    const double error = TrackError(measured[frame], particles[frame], nodes);
+    if (!std::isnan(error)) track.push_back(error);
+  }
+  return track;
+}
+
+double Mean(const FrameTrack& track) {
+  double sum = 0;
+  for (double error : track) sum += error;
+  return track.empty() ? std::numeric_limits<double>::quiet_NaN()
+                       : sum / static_cast<double>(track.size());
+}
+
+double MeanTrackError(const Episode& episode, FrameUse use, const std::vector<Points>& particles) {
+  const FrameTrack track = TrackOf(episode, use, particles);
+  return track.empty() ? 0 : Mean(track);
+}
+
+double GeometricTrackError(const SpringMassSystem& system, const std::vector<Episode>& episodes,
+                           FrameUse use, RolloutOptions options) {
+  const bool automatic = options.substeps == 0;
+  const StabilityBound bound = automatic ? ComputeStabilityBound(system) : StabilityBound{};
+  double sum = 0;  // of logarithms
+  for (const Episode& episode : episodes) {
+    if (automatic) {
+      options.substeps = StableSubsteps(bound, 1 / episode.recording->fps, kStepSafety);
+    }
+    const auto rollout = RollOut(system, episode, options);
+    if (rollout->diverged()) return std::numeric_limits<double>::infinity();
+    const double error = MeanTrackError(episode, use, rollout->positions());
+    sum += std::log(std::max(error, kLeastError));
+  }
+  return std::exp(sum / static_cast<double>(episodes.size()));
+}
+
+}  // namespace physpring

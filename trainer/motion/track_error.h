@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What models are judged by: how far their motions are from measured ones, in frames of one use.
+#ifndef PHYSPRING_TRAINER_MOTION_TRACK_ERROR_H_
+#define PHYSPRING_TRAINER_MOTION_TRACK_ERROR_H_
+
+#include <vector>
+
+#include "trainer/motion/rollout.h"
+
+namespace physpring {
+
+// Mean distance, m, of predicted from measured points of each frame of one use, in order; frames in
+// which nothing was seen are left out.
+using FrameTrack = std::vector<double>;
+
+// `particles`: predicted positions in each frame.
+FrameTrack TrackOf(const Episode& episode, FrameUse use, const std::vector<Points>& particles);
+
+double Mean(const FrameTrack& track);  // NaN of none
+
+// The mean over the frames; 0 where nothing was seen.
+double MeanTrackError(const Episode& episode, FrameUse use, const std::vector<Points>& particles);
+
+// The geometric mean of the episodes' track errors [m], so that one in which a free motion loses
+// its phase does not decide; infinite where a motion diverges. options.substeps of 0 are as many as
+// are stable.
+double GeometricTrackError(const SpringMassSystem& system, const std::vector<Episode>& episodes,
+                           FrameUse use, RolloutOptions options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_MOTION_TRACK_ERROR_H_

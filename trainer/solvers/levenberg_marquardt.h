@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Levenberg-Marquardt for a few parameters: minimises |r(x)|^2 / variance + precision |x|^2 with
+// forward differences of the residuals r, which cost one evaluation a parameter (in parallel) and
+// need no adjoint. It finds start values; gauss_newton.h goes on with all parameters.
+#ifndef PHYSPRING_TRAINER_SOLVERS_LEVENBERG_MARQUARDT_H_
+#define PHYSPRING_TRAINER_SOLVERS_LEVENBERG_MARQUARDT_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+namespace physpring {
+
+struct LevenbergMarquardtOptions {
+  double difference = 1e-3;  // step of the forward differences
+  double precision = 0.25;   // of the prior: 1 / (standard deviation of an entry)^2
+  double longest_step = 1;   // no entry of x moves further in one step
+  double tolerance = 2e-3;   // converged when a step lowers the objective by less than this share
+  int threads = 1;
+};
+
+struct LevenbergMarquardtState {
+  Eigen::VectorXd x;
+  double damping = 1e-2;
+  double mean_square = 0;  // of the residuals at x
+  bool converged = false;
+};
+
+// Residuals at x (always the same number); nothing where the model cannot be evaluated. Called from
+// several threads at once.
+using ResidualFunction = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& x)>;
+
+// One step. The variance is the mean of r^2 at the step's start, so the prior counts as much as
+// it would if the misfit were noise of that size. Where no trial is better, x stays and the state
+// is converged; also where r(x) does not exist.
+LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals,
+                                               const LevenbergMarquardtState& state,
+                                               const LevenbergMarquardtOptions& options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_SOLVERS_LEVENBERG_MARQUARDT_H_

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef PHYSPRING_TRAINER_SOLVERS_PARALLEL_H_
+#define PHYSPRING_TRAINER_SOLVERS_PARALLEL_H_
+
+#include <functional>
+#include <vector>
+
+namespace physpring {
+
+// Calls work(0) ... work(count - 1), each once, on up to `threads` threads. The first exception
+// thrown by a call (lowest index) is thrown again when all have ended. Results that go to places of
+// their own do not depend on the number of threads.
+void ParallelFor(int count, int threads, const std::function<void(int)>& work);
+
+// The same, for work that can use several threads itself: work(i, share), where share() tells how
+// many threads this call may use now. It grows as other calls end.
+void ParallelShared(int count, int threads,
+                    const std::function<void(int, const std::function<int()>&)>& work);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_SOLVERS_PARALLEL_H_
