@@ -64,6 +64,37 @@ void Run(const std::string& scene, const std::string& output, bool force,
              recording.interior_count(), recording.controller_count(), recording.mass);
 }
 
+struct RecordArguments {
+  std::string scene, output;
+  std::vector<std::string> effects;
+  bool force = false;
+  RecordOptions options;
+};
+
+// How it is moved, and what a camera sees of it.
+void AddMeasurementOptions(CLI::App* command, RecordOptions* options) {
+  command->add_option("--noise", options->noise, "standard deviation of each coordinate")
+      ->check(NumberBetween(0, 1))
+      ->type_name("METRES")
+      ->capture_default_str();
+  command->add_option("--occlusion", options->occlusion, "fraction of points hidden in each frame")
+      ->check(NumberBetween(0, 0.99))
+      ->type_name("FRACTION")
+      ->capture_default_str();
+  command->add_option("--vary", options->vary, "shift keyframes by up to this: another motion")
+      ->check(NumberBetween(0, 10))
+      ->type_name("METRES")
+      ->capture_default_str();
+  AddSeed(command, &options->seed, "of noise, occlusion and variation");
+  command->add_option("--duration", options->duration, "default: until the last keyframe")
+      ->check(NumberBetween(1e-6, 1e6))
+      ->type_name("SECONDS");
+  command->add_option("--fps", options->fps, "frames per second")
+      ->check(NumberBetween(0.1, 10000))
+      ->type_name("NUMBER")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void AddRecordCommand(CLI::App& app) {
@@ -72,14 +103,7 @@ void AddRecordCommand(CLI::App& app) {
       "Simulates a MuJoCo scene with one soft body (a flex, or bodies joined by spatial tendons), "
       "held by mocap bodies that move along the scene's keyframes, and writes what a camera would "
       "have measured.");
-  struct RecordArguments {
-    std::string scene, output;
-    std::vector<std::string> effects;
-    bool force = false;
-    RecordOptions options;
-  };
   const auto arguments = std::make_shared<RecordArguments>();
-  RecordOptions& options = arguments->options;
   command->add_option("scene", arguments->scene, "scene (MJCF)")
       ->required()
       ->type_name("SCENE.xml");
@@ -87,26 +111,7 @@ void AddRecordCommand(CLI::App& app) {
       ->required()
       ->check(NotEmpty())
       ->type_name("REC.npz");
-  command->add_option("--noise", options.noise, "standard deviation of each coordinate")
-      ->check(NumberBetween(0, 1))
-      ->type_name("METRES")
-      ->capture_default_str();
-  command->add_option("--occlusion", options.occlusion, "fraction of points hidden in each frame")
-      ->check(NumberBetween(0, 0.99))
-      ->type_name("FRACTION")
-      ->capture_default_str();
-  command->add_option("--vary", options.vary, "shift keyframes by up to this: another motion")
-      ->check(NumberBetween(0, 10))
-      ->type_name("METRES")
-      ->capture_default_str();
-  AddSeed(command, &options.seed, "of noise, occlusion and variation");
-  command->add_option("--duration", options.duration, "default: until the last keyframe")
-      ->check(NumberBetween(1e-6, 1e6))
-      ->type_name("SECONDS");
-  command->add_option("--fps", options.fps, "frames per second")
-      ->check(NumberBetween(0.1, 10000))
-      ->type_name("NUMBER")
-      ->capture_default_str();
+  AddMeasurementOptions(command, &arguments->options);
   command
       ->add_option("--effect", arguments->effects,
                    "give the scene this, too, without a word in the recording; may be repeated")

@@ -48,7 +48,18 @@ Assignment GrowFromRoots(const SpringGraph& graph, const std::vector<int>& roots
   return Renumber(assignment);
 }
 
-Assignment Agglomerate(const SpringGraph& graph, const Eigen::MatrixXd& features, int nodes) {
+namespace {
+
+// Ward's clusters, of which the two that are most alike are joined again and again.
+class Agglomeration {
+ public:
+  Agglomeration(const SpringGraph& graph, const Eigen::MatrixXd& features);
+
+  // Joins two clusters.
+  void Join();
+  const Assignment& assignment() const { return assignment_; }
+
+ private:
   struct Cluster {
     Eigen::VectorXd mean;
     double variance = 0;  // mean squared distance from the mean
@@ -56,52 +67,75 @@ Assignment Agglomerate(const SpringGraph& graph, const Eigen::MatrixXd& features
     int version = 0;  // grows with each change, so that older entries of the queue are void
     std::set<int> neighbours;
   };
-  const int count = graph.node_count();
-  std::vector<Cluster> clusters(count);
-  Assignment assignment(count);
   using Entry = std::tuple<double, int, int, int, int>;  // dissimilarity, clusters, their versions
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  const auto push = [&](int i, int j) {
-    const Cluster &a = clusters[std::min(i, j)], &b = clusters[std::max(i, j)];
-    const double dissimilarity = (a.mean - b.mean).squaredNorm() + a.variance + b.variance;
-    open.emplace(dissimilarity, std::min(i, j), std::max(i, j), a.version, b.version);
-  };
+
+  void Push(int i, int j);
+  void Absorb(int i, int j);  // cluster j into i
+
+  std::vector<Cluster> clusters_;
+  Assignment assignment_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open_;
+};
+
+Agglomeration::Agglomeration(const SpringGraph& graph, const Eigen::MatrixXd& features)
+    : clusters_(graph.node_count()), assignment_(graph.node_count()) {
+  const int count = graph.node_count();
   for (int i = 0; i < count; ++i) {
-    assignment[i] = i;
-    clusters[i].mean = features.row(i);
-    for (const SpringGraph::Link& link : graph.links[i]) clusters[i].neighbours.insert(link.node);
+    assignment_[i] = i;
+    clusters_[i].mean = features.row(i);
+    for (const SpringGraph::Link& link : graph.links[i]) clusters_[i].neighbours.insert(link.node);
   }
   for (int i = 0; i < count; ++i) {
-    for (int j : clusters[i].neighbours) {
-      if (i < j) push(i, j);
+    for (int j : clusters_[i].neighbours) {
+      if (i < j) Push(i, j);
     }
   }
-  for (int left = count; left > ClusterBudget(graph, nodes);) {
-    const auto [dissimilarity, i, j, version_i, version_j] = open.top();
-    open.pop();
-    Cluster &a = clusters[i], &b = clusters[j];
-    if (a.version != version_i || b.version != version_j) continue;
-    const double share = static_cast<double>(b.size) / (a.size + b.size);
-    const Eigen::VectorXd apart = b.mean - a.mean;
-    a.variance =
-        (1 - share) * a.variance + share * b.variance + share * (1 - share) * apart.squaredNorm();
-    a.mean += share * apart;
-    a.size += b.size;
-    ++a.version;
-    b.version = -1;
-    for (int k : b.neighbours) {
-      clusters[k].neighbours.erase(j);
-      if (k == i) continue;
-      clusters[k].neighbours.insert(i);
-      a.neighbours.insert(k);
-    }
-    for (int& cluster : assignment) {
-      if (cluster == j) cluster = i;
-    }
-    for (int k : a.neighbours) push(i, k);
-    --left;
+}
+
+void Agglomeration::Push(int i, int j) {
+  const Cluster &a = clusters_[std::min(i, j)], &b = clusters_[std::max(i, j)];
+  const double dissimilarity = (a.mean - b.mean).squaredNorm() + a.variance + b.variance;
+  open_.emplace(dissimilarity, std::min(i, j), std::max(i, j), a.version, b.version);
+}
+
+void Agglomeration::Join() {
+  for (;;) {
+    const auto [dissimilarity, i, j, version_i, version_j] = open_.top();
+    open_.pop();
+    if (clusters_[i].version != version_i || clusters_[j].version != version_j) continue;
+    Absorb(i, j);
+    return;
   }
-  return Renumber(assignment);
+}
+
+void Agglomeration::Absorb(int i, int j) {
+  Cluster &a = clusters_[i], &b = clusters_[j];
+  const double share = static_cast<double>(b.size) / (a.size + b.size);
+  const Eigen::VectorXd apart = b.mean - a.mean;
+  a.variance =
+      (1 - share) * a.variance + share * b.variance + share * (1 - share) * apart.squaredNorm();
+  a.mean += share * apart;
+  a.size += b.size;
+  ++a.version;
+  b.version = -1;
+  for (int k : b.neighbours) {
+    clusters_[k].neighbours.erase(j);
+    if (k == i) continue;
+    clusters_[k].neighbours.insert(i);
+    a.neighbours.insert(k);
+  }
+  for (int& cluster : assignment_) {
+    if (cluster == j) cluster = i;
+  }
+  for (int k : a.neighbours) Push(i, k);
+}
+
+}  // namespace
+
+Assignment Agglomerate(const SpringGraph& graph, const Eigen::MatrixXd& features, int nodes) {
+  Agglomeration clusters(graph, features);
+  for (int left = graph.node_count(); left > ClusterBudget(graph, nodes); --left) clusters.Join();
+  return Renumber(clusters.assignment());
 }
 
 }  // namespace physpring

@@ -54,7 +54,7 @@ Recording HungSheet(double phase) {
 }
 
 SpringMassSystem SheetSystem(const Recording& recording) {
-  SpringMassSystem system = StartSystem(recording, {12, 2.2 * kSpacing, false}, 12);
+  SpringMassSystem system = StartSystem(recording, {&SpringNet(), 12, 2.2 * kSpacing, false}, 12);
   system.drag = 1.5;
   system.dashpot *= 0.1;
   return system;
