@@ -11,7 +11,7 @@
 // within the step as it moves (W = 0), and a lighter one as -J alone lets it; of the overlap that
 // is left a part of s, along n, undoes a fifth in each step. A geom of higher priority than the
 // node's brings its own friction, and takes the bounce. Otherwise what is pressed between fingers
-// vibrates, and creeps out of the grip (docs/decisions.md, "Fingers hold what they press").
+// vibrates, and creeps out of the grip (docs/decisions, 048).
 #ifndef PHYSPRING_PLUGIN_SURFACES_H_
 #define PHYSPRING_PLUGIN_SURFACES_H_
 

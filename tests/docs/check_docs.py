@@ -8,8 +8,8 @@ and exits with status 1; prints nothing and exits with 0 if all is right:
     links      relative links in *.md lead to a file that is there
     pages      every page in docs/ is linked from README.md or from another page
     cells      no table cell of README.md, CONTRIBUTING.md and docs/ is over 30 words
-    decisions  docs/decisions/NNN-*.md have Status, Decision, Against and Measured, and at most 150
-               words
+    decisions  docs/decisions/NNN-*.md have Status, Decision, Against and Measured, at most 150
+               words, a number of their own, and are in the index
     commands   in code blocks of README.md and docs/, commands and flags of lines that begin with
                `physpring ` are in the program's help
 """
@@ -107,18 +107,36 @@ def check_cells(texts):
     return wrong
 
 
+def check_status(page, text, records):
+    """A record's status is one of those allowed, and names a record that is there."""
+    status = re.search(r"^\*\*Status\.\*\* (.*)$", text, re.MULTILINE)
+    other = status and re.fullmatch(r"overruled by \[(\d{3})\]\(.*\)", status.group(1))
+    if not status or not (other or status.group(1) in ("accepted", "superseded")):
+        return [f"{page}: its status is none of: accepted, superseded, overruled by [NNN](file)"]
+    if other and other.group(1) not in records:
+        return [f"{page}: overruled by {other.group(1)}, which is not there"]
+    return []
+
+
 def check_decisions(texts):
     wrong = []
-    for page, text in texts.items():
-        if page.parent != pathlib.Path("docs/decisions") or not re.match(r"\d{3}-", page.name):
-            continue
+    folder = pathlib.Path("docs/decisions")
+    pages = [page for page in texts if page.parent == folder and re.match(r"\d{3}-", page.name)]
+    records = [page.name[:3] for page in pages]
+    index = texts.get(folder / "README.md", "")
+    for page in pages:
+        text = texts[page]
         for part in DECISION_PARTS:
-            # a heading, "Status: ..." or "**Status.** ..."
-            if not re.search(rf"^#+\s+{part}\b|^{part}:|\*\*{part}\b", text, re.MULTILINE):
+            if not re.search(rf"^\*\*{part}\.\*\* \S", text, re.MULTILINE):
                 wrong.append(f"{page}: says nothing of {part}")
+        wrong += check_status(page, text, records)
         words = len(text.split())
         if words > MOST_WORDS_IN_DECISION:
             wrong.append(f"{page}: {words} words, at most {MOST_WORDS_IN_DECISION}")
+        if f"({page.name})" not in index:
+            wrong.append(f"{page}: is not in the index {folder / 'README.md'}")
+        if records.count(page.name[:3]) > 1:
+            wrong.append(f"{page}: another record has its number")
     return wrong
 
 
