@@ -11,7 +11,7 @@ namespace physpring {
 namespace {
 
 constexpr double kLeastRadius = 1e-4;  // m, of a geom
-// Of a controller's mass to the object's: what springs push it aside in a step is h^2 F / m.
+// The ratio of a controller's mass to the object's. Springs push it aside by h^2 F / m in a step.
 constexpr double kControllerMass = 10;
 const char* const kAxes[] = {"1 0 0", "0 1 0", "0 0 1"};
 
@@ -30,7 +30,7 @@ double Radius(const SpringMassSystem& system, int node) {
   return std::max(system.contact_radius[node], kLeastRadius);
 }
 
-// Of sites and controllers, in pictures.
+// The radius of sites and controllers in pictures, m.
 double DrawnRadius(const Twin& twin) { return 0.25 * twin.levels[0].system.rest_length.mean(); }
 
 double Damping(const LevelPlan& plan, int node) {

@@ -11,7 +11,7 @@ namespace {
 using Triangle = std::array<int, 3>;
 using Edge = std::array<int, 2>;
 
-constexpr double kFar = 1e3;  // of the corners around all points, in sizes of their box
+constexpr double kFar = 1e3;  // how far corners are around all points, in sizes of their box
 
 double Orientation(const Eigen::Matrix2Xd& p, const Triangle& t) {
   const Eigen::Vector2d u = p.col(t[1]) - p.col(t[0]), v = p.col(t[2]) - p.col(t[0]);

@@ -47,7 +47,8 @@ struct LevelPlan {
   std::string LargestTimestep() const;
   // Name of the body and of the site of node or controller `column`.
   std::string Body(int column) const;
-  // Of the body that is a flex's vertex, on a node: MuJoCo lets no body with joint damping be one.
+  // Name of the body on a node that is a flex's vertex: MuJoCo lets no body with joint damping be
+  // one.
   std::string Vertex(int node) const;
   std::string NodeClass() const { return name + "_node"; }
   std::string ControllerClass() const { return name + "_controller"; }

@@ -16,12 +16,12 @@ namespace physpring {
 struct Picture {
   bool rod = false;
   double radius = 0;  // m, of a rod; or by how much a skin is inflated
-  TriangleMesh mesh;  // of a skin, in the reference configuration; empty for a rod
+  TriangleMesh mesh;  // the skin's, in the reference configuration; empty for a rod
 };
 
-// Of `mesh_file`, if it is not empty; else made from level 0: a rod where the twin has an order
-// along one, a sheet where the points are in one layer, else a closed surface. Throws Error as
-// ReadMesh does, or if the mesh is not where the twin is.
+// The picture of `mesh_file`, if it is not empty; else one made from level 0: a rod where the twin
+// has an order along one, a sheet where the points are in one layer, else a closed surface. Throws
+// Error as ReadMesh does, or if the mesh is not where the twin is.
 Picture MakePicture(const Twin& twin, const std::string& mesh_file);
 
 void AddPicture(const LevelPlan& plan, const Picture& picture, XmlElement* mujoco);

@@ -11,7 +11,7 @@ namespace physpring {
 namespace {
 
 constexpr int kNeighbours = 8;
-constexpr double kRegularisation = 1e-3;  // of the total of phi
+constexpr double kRegularisation = 1e-3;  // a part of the total of phi
 constexpr double kLeastWeight = 2e-3;     // smaller ones are left out
 
 // The weights of the nodes in `near` (the last one only says how far they reach).

@@ -19,7 +19,7 @@ Eigen::Vector3d EulerStep::Velocity(const mjData* data, int dof, int joint) cons
 
 Eigen::Vector3d EulerStep::NextVelocity(const mjData* data, int dof, int joint, double mass) const {
   const Axes axes = JointAxes(data, joint);
-  Eigen::Vector3d velocity;  // of the joints
+  Eigen::Vector3d velocity;  // along the joints
   for (int j = 0; j < 3; ++j) {
     const double force = data->qfrc_passive[dof + j] + mass * axes.col(j).dot(gravity_);
     velocity[j] = data->qvel[dof + j] + time_ * force / Inertia(dof + j, mass);

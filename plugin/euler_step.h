@@ -35,7 +35,8 @@ class EulerStep {
                   mjData* data) const;
 
  private:
-  using Axes = Eigen::Map<const Eigen::Matrix3d>;  // of a node's joints, columns
+  using Axes =
+      Eigen::Map<const Eigen::Matrix3d>;  // each column is the axis of one of a node's joints
   static Axes JointAxes(const mjData* data, int joint) { return Axes(data->xaxis + 3 * joint); }
   double Damping(int dof) const { return damped_ ? model_->dof_damping[dof] : 0; }
   double Inertia(int dof, double mass) const {

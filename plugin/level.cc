@@ -34,7 +34,7 @@ Eigen::Vector3d Position(const mjModel* model, int body) {
   return position;
 }
 
-// Of each body with those that are fixed in it, kg.
+// The mass of each body with those that are fixed in it, kg.
 std::vector<double> WeldedMass(const mjModel* model) {
   std::vector<double> mass(model->nbody, 0);
   for (int body = 1; body < model->nbody; ++body) {

@@ -13,7 +13,7 @@
 namespace physpring {
 namespace {
 
-// Of the largest stable sub-step, where the attribute is not given.
+// The part of the largest stable sub-step that is taken where the attribute is not given.
 constexpr double kSafety = 0.5;
 
 using Vector = Eigen::Vector3d;

@@ -48,8 +48,8 @@ class Springs {
   Springs(const mjModel* model, int instance);
   Springs(const Springs& other) = default;
 
-  // Of plugin_state: the nodes' lag, where the controllers were, whether that is known, and the
-  // effects' internal variables.
+  // The size of plugin_state: the nodes' lag, where the controllers were, whether that is known,
+  // and the effects' internal variables.
   static int StateSize(const mjModel* model, int instance);
 
   void Compute(const mjModel* model, mjData* data, int instance);

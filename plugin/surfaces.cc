@@ -15,7 +15,7 @@ using Vector = Eigen::Vector3d;
 constexpr double kRecovery = 0.2;
 // A body is heavy to nodes that weigh less than this part of what it shows them.
 constexpr double kHeavy = 0.1;
-// Of the contact law.
+// The bound of the contact law.
 constexpr double kMostFriction = 2;
 
 Eigen::Map<const Vector> X(const NodeState<double>& node) {

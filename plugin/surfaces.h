@@ -65,7 +65,7 @@ class Surfaces {
     int node;
     int body;  // index in bodies_; -1 = fixed
     ContactPair<double> law;
-    Vector normal;    // of the surface, towards the node
+    Vector normal;    // the surface's, towards the node
     Vector start;     // where the node was
     double gap;       // from touching then, m; less than 0: overlap
     double advanced;  // by the surface since, along the normal, m

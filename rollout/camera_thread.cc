@@ -182,7 +182,7 @@ class CameraThread : public Viewer {
   const CameraOptions options_;
   std::vector<mjvCamera> cameras_, shown_;
   std::optional<VideoFile> video_;  // the thread's until it has ended
-  mutable std::mutex mutex_;        // of what follows
+  mutable std::mutex mutex_;        // guards what follows
   std::condition_variable changed_;
   std::deque<Job> jobs_;
   bool ended_ = false;

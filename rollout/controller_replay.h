@@ -24,7 +24,7 @@ struct ReplayOptions {
 };
 
 struct ControllerReplay {
-  int level = 0;  // of the twin
+  int level = 0;  // the twin's level in the scene
   int nodes = 0;
   double timestep = 0;            // s, of MuJoCo
   int steps = 0;                  // a frame

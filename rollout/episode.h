@@ -42,7 +42,7 @@ struct TaskEpisode {
   std::vector<Eigen::VectorXd> actions;  // as the policy gave them, with the start's offset
   std::vector<double> value;             // SuccessRule::Verdict::value after the frame
   std::vector<Eigen::VectorXd> robot;
-  std::vector<Points> nodes;  // of the level, m
+  std::vector<Points> nodes;  // where the level's nodes are, m
 };
 
 // How long it took, s: not the same the next time, so kept apart.

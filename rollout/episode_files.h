@@ -19,7 +19,7 @@ struct EpisodeSummary {
   int frames = 0;  // simulated
   bool success = false;
   int met_frames = 0;
-  double value = 0;  // of the success rule in the last frame; 0 without frames
+  double value = 0;  // the success rule's in the last frame; 0 without frames
   std::string problem;
   EpisodeSeconds seconds;
 };

@@ -36,7 +36,7 @@ class ExportedObject {
 
   const mjModel& model_;
   std::vector<int> nodes_, controllers_;  // bodies
-  std::vector<int> actuators_;            // of each driven controller, the first of three
+  std::vector<int> actuators_;            // the first of three for each driven controller
 };
 
 }  // namespace physpring

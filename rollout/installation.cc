@@ -27,7 +27,7 @@ Finding Compiler() {
 #endif
 }
 
-// Of the library that holds mj_version in this process.
+// The path of the library that holds mj_version in this process.
 std::filesystem::path MujocoLibrary() {
   Dl_info info;
   if (dladdr(reinterpret_cast<void*>(&mj_version), &info) == 0 || !info.dli_fname) return {};

@@ -19,7 +19,7 @@ struct Messages {
 };
 
 thread_local Messages* messages = nullptr;
-mjfLogHandler next_handler = nullptr;  // of messages outside CatchMujoco
+mjfLogHandler next_handler = nullptr;  // gets messages outside CatchMujoco
 
 void HandleMessage(const mjLogMessage* message) {
   if (!messages) {

@@ -39,7 +39,7 @@ void AddOcclusion(double hidden, double fps, std::uint64_t seed, std::vector<Poi
   std::array<Spot, 2> spots;
   for (Spot& spot : spots) spot = {any_point(random), any_point(random)};
 
-  double way = 0;  // of the spots from their points to the next, in [0, 1)
+  double way = 0;  // how far spots are from their points to the next, in [0, 1)
   std::vector<std::pair<double, Eigen::Index>> nearness(static_cast<std::size_t>(count));
   for (std::size_t frame = 1; frame < frames->size(); ++frame) {
     way += 1 / (fps * kWanderTime);

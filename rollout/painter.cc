@@ -78,7 +78,7 @@ Painter::~Painter() {
 
 void Painter::Mark(const Points& marks) {
   constexpr float kColour[4] = {1.0F, 0.35F, 0.1F, 1.0F};
-  constexpr double kSize = 0.003;  // of the model's extent
+  constexpr double kSize = 0.003;  // as a part of the model's extent
   for (const auto& mark : marks.colwise()) {
     if (std::isnan(mark[0]) || scene_.ngeom == scene_.maxgeom) continue;
     const double radius[3] = {kSize * model_.stat.extent, 0, 0};

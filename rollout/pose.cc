@@ -7,7 +7,7 @@
 namespace physpring {
 namespace {
 
-// Of half the angle between two orientations, or its negative.
+// The cosine of half the angle between two orientations, or its negative.
 double Cosine(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return a.w() * b.w() + a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
 }

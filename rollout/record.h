@@ -22,7 +22,7 @@ struct RecordOptions {
   double noise = 0;        // m, standard deviation of each measured coordinate; frame 0 is exact
   double occlusion = 0;    // in [0, 1): fraction of points hidden in each frame; in frame 0 none
   double vary = 0;         // m: keyframes are shifted by up to this, see MocapPath::Vary
-  std::uint64_t seed = 0;  // of noise, occlusion and variation, each independent of the others
+  std::uint64_t seed = 0;  // for noise, occlusion and variation, each independent of the others
   std::optional<double> duration = {};  // s; default: until the last keyframe
   double fps = 30;                      // frames per second
   SceneEffects effects = {};            // that the recording does not declare

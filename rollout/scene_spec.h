@@ -16,8 +16,8 @@ struct DeleteSpec {
 };
 using SpecPtr = std::unique_ptr<mjSpec, DeleteSpec>;
 
-// Of the file `path`, or of `mjcf`, which `where` stands for in messages. Adds what MuJoCo warns of
-// to `warnings`. Throws Error, one line that begins with the file, if it is no MJCF.
+// The spec of the file `path`, or of `mjcf`, which `where` stands for in messages. Adds what MuJoCo
+// warns of to `warnings`. Throws Error, one line that begins with the file, if it is no MJCF.
 SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings);
 SpecPtr ParseSpecText(const std::string& mjcf, const std::string& where,
                       std::vector<std::string>* warnings);

@@ -171,7 +171,7 @@ Points VelocitiesOf(const mjModel& model, const mjData& data, const SoftPoints& 
   Points velocities(3, places.cols());
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const int body = BodyOf(model, soft, elements[i]);
-    Eigen::Matrix<double, 6, 1> motion;  // of the body frame: angular, linear; world axes
+    Eigen::Matrix<double, 6, 1> motion;  // the body frame's: angular, linear; world axes
     mj_objectVelocity(&model, &data, mjOBJ_XBODY, body, motion.data(), 0);
     const Eigen::Vector3d angular = motion.head<3>(), linear = motion.tail<3>();
     const Eigen::Vector3d arm = places.col(static_cast<Eigen::Index>(i)) -

@@ -11,8 +11,8 @@ namespace physpring {
 
 struct EpisodeStart {
   int episode = 0;
-  std::uint64_t seed = 0;  // of the policy's random numbers
-  Pose object;             // of the twin's reference configuration in the scene
+  std::uint64_t seed = 0;  // where the policy's random numbers start
+  Pose object;             // where the twin's reference configuration is in the scene
   Eigen::Vector3d action_offset = Eigen::Vector3d::Zero();  // m, added to Cartesian actions
 };
 

@@ -98,7 +98,7 @@ class Queue {
   const std::vector<Job> jobs_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stopped_{false};
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards what follows
   int finished_;
   Sweep& sweep_;
   std::exception_ptr failure_;

@@ -18,7 +18,7 @@ namespace physpring {
 struct SweepOptions {
   std::vector<int> levels{0};
   int first = 0, episodes = 1;  // numbers first ... first + episodes - 1
-  int shard = 1, shards = 1;    // of the episodes, this shard runs number shard - 1, + shards, ...
+  int shard = 1, shards = 1;    // this shard runs the episodes shard - 1, + shards, ...
   std::uint64_t seed = 0;
   Disturbance disturbance;
   PolicyChoice policy;
@@ -40,7 +40,7 @@ struct SweepHooks {
 
 struct Sweep {
   std::vector<EpisodeSummary> episodes;  // by number, then level; all that are finished
-  int skipped = 0;                       // of them, found finished in the folder
+  int skipped = 0;                       // how many were found finished in the folder
   bool complete = true;                  // not stopped
   std::vector<std::string> warnings;
 };

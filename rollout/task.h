@@ -42,7 +42,7 @@ struct StartOptions {
   std::vector<double> x{0}, y{0}, yaw{0};  // m, m, rad
   double noise_xy = 0, noise_yaw = 0;      // m, rad; ReadTask: 2 mm, 1 degree unless given
 
-  int cells() const;  // of the grid
+  int cells() const;  // how many the grid has
 };
 
 struct SuccessOptions {
@@ -60,10 +60,10 @@ struct Task {
   std::string scene;                // path of the MJCF without the object
   Twin twin;                        // the object
   std::vector<std::string> levels;  // paths of the exported levels, level 0 first
-  Pose object;                      // of the twin's reference configuration in the scene
+  Pose object;                      // where the twin's reference configuration is in the scene
   double rate = 30;                 // Hz, of control; a frame lasts 1 / rate
   int settle = 30;                  // frames before frame 0, the robot at home
-  int frames = 900;                 // of an episode
+  int frames = 900;                 // how many an episode has
   RobotOptions robot;
   StartOptions starts;
   SuccessOptions success;

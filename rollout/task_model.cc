@@ -16,7 +16,7 @@
 namespace physpring {
 namespace {
 
-constexpr const char* kPrefix = "object_";  // of the level's names in the scene
+constexpr const char* kPrefix = "object_";  // what the level's names begin with in the scene
 
 // The body that holds the nodes, in the scene: the level's first one.
 std::string ObjectBody(mjSpec* level, const std::string& file) {

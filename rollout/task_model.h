@@ -19,15 +19,15 @@ struct TaskModel {
   int steps = 0;  // MuJoCo's, a frame
 
   // The object: its nodes are bodies on slide joints, children of one fixed body.
-  Pose parent;                 // of that body
+  Pose parent;                 // where that body is
   Points reference;            // 3 x nodes, m: at qpos = 0, in the parent's frame
-  std::vector<int> node_qpos;  // of each node's first joint
+  std::vector<int> node_qpos;  // where each node's first joint is in qpos
 
   // The robot. Numbers of what the task names; -1: nothing.
   int target = -1;  // row of mocap_pos
   int hand = -1;
   std::vector<int> actuators;
-  std::vector<int> joint_qpos;  // of the actuators' joints (RobotKind::kJoints)
+  std::vector<int> joint_qpos;  // where the actuators' joints are in qpos (RobotKind::kJoints)
 
   int success_body = 0;
   std::unique_ptr<const SuccessRule> success;

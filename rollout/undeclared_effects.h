@@ -60,11 +60,11 @@ class UndeclaredEffects {
   void ChangeFlexLengths(mjModel* model) const;
   void DriveForces(double time, mjModel* model, mjData* data) const;
 
-  SceneEffects values_;  // of effects that are there
+  SceneEffects values_;  // only those of effects that are there
   const mjModel& plain_;
   const SoftPoints& soft_;
   std::vector<int> particles_;  // elements, points before interior
-  Points reference_, held_;     // of particles and controllers in the reference configuration, m
+  Points reference_, held_;     // particles and controllers in the reference configuration, m
   Points vertices_, sites_;     // all of the model, there, m
 };
 

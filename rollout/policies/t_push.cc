@@ -46,7 +46,7 @@ std::vector<Waypoint> TPush::Plan(int leg, const Observation& observation) {
   const Plane ahead = is_near ? Plane(1, 0) : Plane(way.normalized());
   const Plane left(-ahead.y(), ahead.x());
   const double beside = std::clamp(-kBeside * turn, -kMostBeside, kMostBeside);
-  double back = 0;  // of the object in the pusher's way
+  double back = 0;  // how far back the object lies in the pusher's way
   for (Eigen::Index i = 0; i < particles.cols(); ++i) {
     const Plane from = particles.topRows<2>().col(i) - centre;
     if (std::abs(left.dot(from) - beside) < kPusher) back = std::min(back, ahead.dot(from));

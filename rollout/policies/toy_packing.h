@@ -18,7 +18,7 @@ class ToyPacking : public WaypointPolicy {
 
  private:
   Box box_;
-  Points reference_;  // of the particles, where the toy's long side is along x
+  Points reference_;  // where the particles are if the toy's long side is along x
 };
 
 }  // namespace physpring
