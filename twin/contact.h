@@ -145,9 +145,9 @@ class Contact<Real>::Impacts {
   friend class Contact;
   std::vector<PlacedGeom> geoms;
   std::vector<Collision> collisions;
-  std::vector<int> hits;  // of each node, by other particles
+  std::vector<int> hits;  // how often each node is hit by other particles
   std::vector<Touch> touches;
-  std::vector<Velocity> before;  // of the nodes that particles hit
+  std::vector<Velocity> before;  // the velocities of the nodes that particles hit
 };
 
 }  // namespace physpring

@@ -17,7 +17,7 @@ struct RecordingEntry {
   std::string path;
   bool heldout = false;  // its role in the data set; a file given by itself is not held out
   int continuous_recording = -1;  // files of equal number follow each other in time; -1: not said
-  bool published_l1 = false;      // of a data set with published errors in its L1 metric
+  bool published_l1 = false;      // whether its data set has published errors in the L1 metric
 };
 
 // The recordings of `arguments` in their order, those of a folder in the order of its file. A file

@@ -24,7 +24,7 @@ struct LevelResult {
   int springs = 0;
   int substeps = 0;              // a frame
   double frames_per_second = 0;  // simulated, by one thread; reading and comparing not counted
-  FrameErrors direct, lifted;    // of all frames
+  FrameErrors direct, lifted;    // the errors of all frames
   std::optional<double> published_l1;  // m, of the lifted points
   std::vector<Points> positions;       // T frames of 3 x nodes, m
   std::vector<Points> points;          // T frames of 3 x N, m: the measured points as predicted

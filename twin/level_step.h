@@ -43,11 +43,11 @@ class NodeStep {
 template <class Real>
 struct LevelSubstep {
   NodeView<Real> nodes;
-  double start;                                // of the frame, s since that of the recording
+  double start;                                // the frame's start, s since that of the recording
   double elapsed;                              // since the start of the frame, s
   double h;                                    // its length, s
   const Points& controller_velocity;           // 3 x controllers, m/s
-  const typename Contact<Real>::Pairs& pairs;  // of particles that may collide
+  const typename Contact<Real>::Pairs& pairs;  // the particles that may collide
   const std::vector<Geom>& geoms;
 };
 
@@ -117,7 +117,7 @@ class LevelStep {
   const Kernel<Real>* kernel_;
   SpringBlocks<Real> springs_;
   Contact<Real> contact_;
-  Eigen::Vector3d gravity_;                          // of the environment, m/s^2
+  Eigen::Vector3d gravity_;                          // the environment's, m/s^2
   std::shared_ptr<const EffectStep<Real>> effects_;  // never null; of no effects, it adds nothing
 };
 

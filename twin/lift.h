@@ -46,8 +46,8 @@ class Lift {
 
   bool identity_;
   Points particles_start_, nodes_start_;
-  std::vector<std::vector<int>> neighbours_;  // of each node, joined by a spring
-  std::vector<Anchors> anchors_;              // of each particle
+  std::vector<std::vector<int>> neighbours_;  // for each node, those that springs join it to
+  std::vector<Anchors> anchors_;              // one for each particle
 };
 
 }  // namespace physpring

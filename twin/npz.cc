@@ -17,7 +17,7 @@ namespace physpring {
 namespace {
 
 constexpr std::size_t kLargestContent = std::size_t{1} << 32;  // bytes of all arrays together
-constexpr std::size_t kLargestDeflateRatio = 1032;             // of the format: RFC 1951
+constexpr std::size_t kLargestDeflateRatio = 1032;             // the format's limit: RFC 1951
 constexpr std::size_t kLargestNpyHeader = 1 << 16;             // bytes
 
 struct CloseZip {

@@ -9,8 +9,8 @@
 
 namespace physpring {
 
-// Of the way from frame - 1 to `frame` (>= 1). Controllers are linear between frames and stand
-// still before frame 0.
+// The input on the way from frame - 1 to `frame` (>= 1). Controllers are linear between frames and
+// stand still before frame 0.
 FrameInput RecordedInput(const Recording& recording, int frame, double delay);
 
 }  // namespace physpring

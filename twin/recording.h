@@ -14,13 +14,13 @@ namespace physpring {
 
 struct Recording {
   std::string name;  // file name without folder and extension
-  std::string hash;  // of the file's content, 16 hex digits; empty if not read from a file
+  std::string hash;  // the hash of the file's content, 16 hex digits; empty if not read from a file
 
   std::vector<Points> points;       // T frames of 3 x N, m; a column of NaN = not seen
   std::vector<Points> controllers;  // T frames of 3 x C, m; C may be 0
   double fps = 0;                   // frames per second, > 0
 
-  double mass = 0.1;                      // of the object, kg
+  double mass = 0.1;                      // the object's, kg
   Eigen::Vector3d gravity{0, 0, -9.81};   // m/s^2
   std::optional<Eigen::Vector4d> ground;  // plane (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1
 

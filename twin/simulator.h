@@ -48,7 +48,7 @@ class Simulator {
 
   // State of free nodes at `position` and `velocity` (3 x nodes).
   State MakeState(const Points& position, const Points& velocity) const;
-  Points Positions(const State& state) const;   // of the free nodes, 3 x nodes, m
+  Points Positions(const State& state) const;   // where the free nodes are, 3 x nodes, m
   Points Velocities(const State& state) const;  // 3 x nodes, m/s
 
   // Buffers of a frame; one a thread.
@@ -96,11 +96,11 @@ class Simulator<Real>::Workspace {
 
   State next;
   std::vector<State> states;  // at the start of each sub-step of a frame, and at its end
-  std::vector<typename LevelStep<Real>::Impacts> impacts;  // of each sub-step
+  std::vector<typename LevelStep<Real>::Impacts> impacts;  // one for each sub-step
   LevelBuffers<Real> buffers;
-  typename Contact<Real>::Pairs pairs;  // of the frame
+  typename Contact<Real>::Pairs pairs;  // the pairs of the frame
   Points controller_velocity;           // 3 x controllers, m/s, in the frame
-  FrameInput input;                     // of the frame that was recorded last
+  FrameInput input;                     // what moved the frame that was recorded last
 };
 
 }  // namespace physpring

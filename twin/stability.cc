@@ -76,7 +76,7 @@ Estimate Lanczos(const ScaledLaplacian& A, Eigen::VectorXd q) {
   const Eigen::Index steps = std::min<Eigen::Index>(q.size(), 80);
   Eigen::VectorXd previous = Eigen::VectorXd::Zero(q.size());
   q.normalize();
-  Eigen::VectorXd diagonal(steps), beside(steps);  // of the projection
+  Eigen::VectorXd diagonal(steps), beside(steps);  // the projection's, on and beside its diagonal
   Eigen::Index size = 0;
   for (;;) {
     Eigen::VectorXd next = A * q;

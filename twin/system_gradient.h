@@ -16,7 +16,7 @@ struct SystemGradient {
   double drag = 0;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
   ContactLaws<double> contact;           // surface and object restitution and friction
-  std::vector<Eigen::VectorXd> effects;  // of each effect: with respect to its values
+  std::vector<Eigen::VectorXd> effects;  // for each effect, with respect to its values
 
   explicit SystemGradient(const SpringMassSystem& system);
   SystemGradient& operator+=(const SystemGradient& other);

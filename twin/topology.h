@@ -19,10 +19,10 @@ namespace physpring {
 
 struct TopologyOptions {
   double radius = std::numeric_limits<double>::infinity();  // m
-  int max_neighbours = 12;                                  // of a node, itself not counted
+  int max_neighbours = 12;                                  // a node's, itself not counted
   double controller_radius = std::numeric_limits<double>::infinity();  // m
-  int controller_max_neighbours = 12;                                  // of a controller
-  int min_neighbours = 0;  // of a node or a controller, however far they are
+  int controller_max_neighbours = 12;                                  // a controller's
+  int min_neighbours = 0;  // a node's or a controller's, however far they are
 };
 
 // Springs (a, b), a < b, sorted. `position` (3 x (nodes + controllers), m, finite) holds the

@@ -24,7 +24,7 @@ struct TrainedOn {
 struct TwinLevel {
   SpringMassSystem system;
   std::vector<int> assignment;  // node of the level below -> node of this level; empty at level 0
-  int substeps_per_second = 0;  // of the sub-step it was trained with, per second of time
+  int substeps_per_second = 0;  // sub-steps it was trained with, per second of time
 };
 
 struct Twin {

@@ -23,7 +23,7 @@ class AirDragForce : public EffectForce {
                   const Points& force_bar, Eigen::Ref<Eigen::VectorXd>,
                   InstantGradient* gradient) const override {
     const double total = mass_.sum();
-    double mean = 0;  // of the derivative with respect to the shares m / M
+    double mean = 0;  // the mean derivative with respect to the shares m / M
     for (Eigen::Index i = 0; i < mass_.size(); ++i) {
       const Eigen::Vector3d u = instant.v.col(i) - wind_, f_bar = force_bar.col(i);
       const double speed = u.norm(), share = mass_[i] / total;

@@ -19,7 +19,7 @@ namespace physpring {
 // What the moment at a triple depends on, or the derivatives of a loss with respect to it.
 struct Bend {
   Eigen::Vector3d bend = Eigen::Vector3d::Zero();     // kappa
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();     // of change of kappa, 1/s
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();     // how fast kappa changes, 1/s
   Eigen::Vector3d tangent = Eigen::Vector3d::Zero();  // s
 };
 

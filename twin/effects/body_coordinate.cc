@@ -10,7 +10,7 @@ namespace physpring {
 namespace {
 
 constexpr double kNoSpring = std::numeric_limits<double>::infinity();
-constexpr double kPatch = 0.5;  // of the distance between neighbours
+constexpr double kPatch = 0.5;  // a patch's radius, in distances between neighbours
 
 // Half the mean length of the shortest springs of the nodes.
 double PatchRadius(const SpringMassSystem& system) {

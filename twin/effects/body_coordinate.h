@@ -10,10 +10,10 @@
 
 namespace physpring {
 
-// Of each node and controller. All 0 for a body that is one point.
+// The coordinate of each node and controller. All 0 for a body that is one point.
 Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system);
 
-// Of each node and controller: its place across the body, 3 x (nodes + controllers), m: seen from
+// For each node and controller, its place across the body, 3 x (nodes + controllers), m: seen from
 // the mean, without what lies along the longest principal axis. All 0 for a rod.
 Points PlaceAcross(const SpringMassSystem& system);
 
@@ -21,7 +21,7 @@ Points PlaceAcross(const SpringMassSystem& system);
 // values.
 Eigen::MatrixXd KnotWeights(const Eigen::VectorXd& coordinate, int knots);
 
-// Of each node: how much a thing at `place` (m, in the reference configuration) is attached to it:
+// For each node, how much a thing at `place` (m, in the reference configuration) is attached to it:
 // exp(-|position - place|^2 / 2 r^2), scaled to a sum of 1; r is half the mean distance of a node
 // to its nearest one along a spring, so that a thing on a node is on this one for the most part.
 Eigen::VectorXd PatchWeights(const SpringMassSystem& system, const Eigen::Vector3d& place);

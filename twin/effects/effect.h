@@ -57,8 +57,8 @@ struct Instant {
 // Where the adjoint of forces adds d loss / d what the forces depend on.
 struct InstantGradient {
   Points x, v;                 // 3 x (nodes + controllers)
-  Eigen::VectorXd values;      // of the effect
-  SystemGradient* parameters;  // of the system that it acts on
+  Eigen::VectorXd values;      // with respect to the effect's values
+  SystemGradient* parameters;  // with respect to the system's numbers
 };
 
 // The forces on nodes of one effect with given values on one system, which must outlive it.

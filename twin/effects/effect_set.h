@@ -48,9 +48,10 @@ class EffectSet {
 
   std::vector<const Effect*> effects_;
   std::vector<Setting> settings_;  // before the first effect, between them, after the last
-  std::vector<std::unique_ptr<EffectForce>> forces_;  // of each effect; null: none
-  std::vector<int> offset_;     // of each effect's internal variables; the last one: their number
-  std::vector<BendLaw> bends_;  // those of forces_ that are of bending ...
+  std::vector<std::unique_ptr<EffectForce>> forces_;  // one for each effect; null: none
+  std::vector<int>
+      offset_;  // where each effect's internal variables begin; the last one: their number
+  std::vector<BendLaw> bends_;     // those of forces_ that are of bending ...
   std::vector<std::size_t> bend_;  // ... and which they are
 };
 

@@ -12,7 +12,7 @@ namespace physpring {
 template <class Real>
 struct SpringMoment {
   Real length = 0;       // l, m
-  Real rate = 0;         // of change of the length, m/s
+  Real rate = 0;         // how fast the length changes, m/s
   Real stiffness = 0;    // k of the spring, N/m
   Real rest_length = 0;  // L of the spring, m
   // Part of the rate that is a controller's own motion, m/s; also where dashpots take controllers

@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr double kLeast = -0.9;  // of a t
+constexpr double kLeast = -0.9;  // the least value that a t counts with
 
 template <class Real>
 class StiffnessDriftLaw {
@@ -34,7 +34,7 @@ class StiffnessDriftLaw {
 
  private:
   Real drift_;        // a t
-  Real drift_slope_;  // of it with a, s
+  Real drift_slope_;  // its derivative with respect to a, s
 };
 
 class StiffnessDrift : public Effect {

@@ -45,7 +45,7 @@ struct TensionBuffers {
   std::vector<Real> length, rate, pull, tension;                  // (springs)
   std::vector<Real> tension_bar, length_bar, rate_bar, pull_bar;  // (springs)
   Points controller_velocity_bar;             // 3 x controllers, summed over sub-steps
-  std::vector<std::vector<Real>> values_bar;  // of each effect, see TensionGradient
+  std::vector<std::vector<Real>> values_bar;  // one for each effect, see TensionGradient
 };
 
 template <class Real>
@@ -75,7 +75,7 @@ class TensionStep {
 
  private:
   struct Tension {
-    std::size_t effect;  // of the system
+    std::size_t effect;  // which of the system's
     Eigen::Index values;
     std::unique_ptr<const SpringTension> law;
     int record;  // where its internal variables begin

@@ -44,7 +44,7 @@ class UniformForceForce : public EffectForce {
   struct Course {
     Eigen::Vector3d force;
     int knot;
-    double fraction, interval_slope;  // of the way to the next knot, and its derivative
+    double fraction, interval_slope;  // the part of the way to the next knot, and its derivative
   };
   Course At(double time) const {
     const double place = interval_ > 0 ? time / interval_ : 0;
