@@ -10,6 +10,7 @@ and exits with status 1; prints nothing and exits with 0 if all is right:
     cells      no table cell of README.md, CONTRIBUTING.md and docs/ is over 30 words
     decisions  docs/decisions/NNN-*.md have Status, Decision, Against and Measured, at most 150
                words, a number of their own, and are in the index
+    effects    the table of docs/physics.md has the effects of twin/effects/registry.cc, no others
     commands   in code blocks of README.md and docs/, commands and flags of lines that begin with
                `physpring ` are in the program's help
 """
@@ -134,6 +135,17 @@ def check_decisions(texts):
     return wrong
 
 
+def check_effects(root, texts):
+    registry = (root / "twin/effects/registry.cc").read_text(encoding="utf-8")
+    known = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+             for name in re.findall(r"\bEFFECT\((\w+)\)", registry)}
+    page = pathlib.Path("docs/physics.md")
+    table = re.search(r"^\| effect \|.*\n((?:\|.*\n)*)", texts[page], re.MULTILINE)
+    told = set(re.findall(r"^\| `(\w+)`", table.group(1) if table else "", re.MULTILINE))
+    return ([f"{page}: the table lacks the effect {name}" for name in sorted(known - told)] +
+            [f"{page}: there is no effect {name}" for name in sorted(told - known)])
+
+
 def commands_of(text):
     """(line number, words) of each command in code, lines that go on joined, without comments."""
     number_of_first, joined = 0, ""
@@ -206,6 +218,7 @@ def main():
     wrong += check_pages_are_linked(texts, linked)
     wrong += check_cells(texts)
     wrong += check_decisions(texts)
+    wrong += check_effects(root, texts)
     wrong += check_commands(texts, Help(sys.argv[1]))
     for line in wrong:
         print(line)
