@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "rollout/effects/registry.h"
 #include "rollout/scene.h"
 #include "rollout/undeclared_effects.h"
 #include "tests/support/random_system.h"
@@ -117,58 +118,37 @@ std::string Mjcf(const Lattice& lattice) {
       kTimestep, bodies, tendons);
 }
 
-void SetVector(const std::string& key, const std::string& unit, const Eigen::Vector3d& value,
-               SceneEffects* effects) {
-  for (int i = 0; i < 3; ++i) {
-    (*effects)[fmt::format("{}_{}_{}", key, "xyz"[i], unit)] = value[i];
+const SceneEffect* FindSceneEffect(const std::string& name) {
+  for (const SceneEffect* effect : AllSceneEffects()) {
+    if (effect->name() == name) return effect;
   }
+  return nullptr;
 }
 
-// One effect, at a random place and in a random direction; `size` is about 1.
-SceneEffects MakeEffect(const std::string& effect, double size, const Lattice& lattice,
-                        Random* random) {
+// A random place and direction; `size` is about 1.
+EffectTrial DrawTrial(double size, const Lattice& lattice, Random* random) {
   const Eigen::Index nodes = lattice.nodes.cols();
   const Eigen::Vector3d node = lattice.nodes.col(
       static_cast<Eigen::Index>((*random)(0.5, 1) * static_cast<double>(nodes - 1)));
   const double angle = (*random)(0, 2 * std::numbers::pi);
-  const Eigen::Vector3d sideways(std::cos(angle), std::sin(angle), 0);
-  SceneEffects e;
-  if (effect == "air_drag") {
-    e["air_drag.drag_kg_per_m"] = static_cast<double>(nodes) * kNodeDrag;
-    SetVector("air_drag.wind", "m_per_s", 3 * size * sideways, &e);
-  } else if (effect == "gravity_direction") {
-    e["gravity_direction.tilt_x_rad"] = 0.12 * size * sideways[1];
-    e["gravity_direction.tilt_y_rad"] = -0.12 * size * sideways[0];
-  } else if (effect == "stiffening") {
-    e["stiffening.cubic_stiffness_ratio"] = 60 * size;
-  } else if (effect == "tension_only") {
-    e["tension_only.slack_share"] = 1;
-  } else if (effect == "yield") {
-    e["yield.yield_strain"] = 0.03 / size;
-  } else if (effect == "dry_friction") {
-    e["dry_friction.slip_strain"] = 0.01 * size;
-  } else if (effect == "mass_distribution") {
-    e["mass_distribution.mass_kg"] = 0.5 * size * kMass;
-    SetVector("mass_distribution.place", "m", node, &e);
-  } else if (effect == "tether") {
-    e["tether.stiffness_n_per_m"] = 2 * size;
-    SetVector("tether.place", "m", node, &e);
-    SetVector("tether.anchor", "m", node + 0.1 * sideways, &e);
-  } else if (effect == "rest_length") {
-    e["rest_length.strain_low_end"] = -0.024 * size;
-    e["rest_length.strain_high_end"] = 0.056 * size;
-  } else if (effect == "control_latency") {
-    e["control_latency.latency_s"] = 0.06 * size;
-  } else if (effect == "stiffness_drift") {
-    e["stiffness_drift.relative_rate_per_s"] = -0.5 * size;
-  } else if (effect == "uniform_force") {
-    SetVector("uniform_force.force", "n", 0.08 * size * sideways, &e);
-    e["uniform_force.period_s"] = 0.9;
-  } else if (effect == "moving_attraction") {
-    e["moving_attraction.strength_n_m2"] = 4e-5 * size * static_cast<double>(nodes);
-    SetVector("moving_attraction.centre", "m", {0.1, 0.05, 0.5}, &e);
-  }
-  return e;
+  return {.size = size,
+          .nodes = static_cast<int>(nodes),
+          .mass = kMass,
+          .drag = static_cast<double>(nodes) * kNodeDrag,
+          .node = node,
+          .sideways = {std::cos(angle), std::sin(angle), 0},
+          .beside = {0.1, 0.05, 0.5}};
+}
+
+SceneEffects MakeEffect(const std::string& name, double size, const Lattice& lattice,
+                        Random* random) {
+  const EffectTrial trial = DrawTrial(size, lattice, random);
+  const SceneEffect* effect = FindSceneEffect(name);
+  SceneEffects effects;
+  if (!effect) return effects;
+  const EffectAmounts amounts = effect->Trial(trial);
+  for (const auto& [key, value] : amounts.all()) effects[name + "." + key] = value;
+  return effects;
 }
 
 // Where the hands are: at the frames on sums of sines from rest, between them on straight lines, as
@@ -271,10 +251,13 @@ void AddNoise(double noise, Random* random, Recording* recording) {
 }  // namespace
 
 const std::vector<std::string>& StudyEffects() {
-  static const std::vector<std::string> kEffects = {
-      "air_drag",        "gravity_direction", "stiffening",       "tension_only", "yield",
-      "dry_friction",    "mass_distribution", "tether",           "rest_length",  "control_latency",
-      "stiffness_drift", "uniform_force",     "moving_attraction"};
+  static const std::vector<std::string> kEffects = [] {
+    std::vector<std::string> names;
+    for (const SceneEffect* effect : AllSceneEffects()) {
+      if (!effect->Trial({}).all().empty()) names.push_back(effect->name());
+    }
+    return names;
+  }();
   return kEffects;
 }
 
@@ -284,7 +267,7 @@ MadeRecordings MakeWithEffect(StudyBody body, const std::string& effect, double 
   const Lattice lattice = MakeLattice(body);
   double size = random(0.8, 1.6);
   const Random place = random;
-  MakeEffect("none", 1, lattice, &random);  // draws the place
+  DrawTrial(1, lattice, &random);
   const Hands first(&random), second(&random);
   const Recording without = Record(lattice, {}, first);
   SceneEffects effects;

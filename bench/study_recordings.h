@@ -14,8 +14,8 @@ namespace physpring {
 
 enum class StudyBody { kRope, kSheet, kBlock };
 
-// Names as in twin/effects, "none", and "moving_attraction": to a point that moves, which is not in
-// the list of effects that a diagnosis knows.
+// The names of the effects that a study tries: those of rollout/effects that have a trial. A
+// diagnosis knows all but those that only scenes have (twin/effects/list.h).
 const std::vector<std::string>& StudyEffects();
 
 struct MadeRecordings {

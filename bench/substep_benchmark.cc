@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a sub-step, forward and with its gradient, by precision, kernel and size:
 //   substep_benchmark --benchmark_filter=gradient/double --benchmark_repetitions=9
-// Counter `substep`: CPU time of one. `free`: without a ground, forward. `forward_viscoelastic` and
-// `gradient_viscoelastic`: with an effect along the springs. A rollout that does not fit into
-// memory pays `forward` once more for its gradient.
+// Counter `substep`: CPU time of one. `free`: without a ground, forward. `forward_EFFECT` and
+// `gradient_EFFECT`: with an effect along the springs. A rollout that does not fit into memory pays
+// `forward` once more for its gradient.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <optional>
 
 #include "bench/rope.h"
+#include "twin/effects/registry.h"
 #include "twin/simulator.h"
 
 namespace physpring {
@@ -19,11 +20,12 @@ constexpr int kSubsteps = 100;  // a frame
 
 struct Case {
   int nodes, springs;
-  bool ground, viscoelastic;
+  bool ground;
+  const Effect* effect = nullptr;  // along the springs
 
   SpringMassSystem System() const {
     SpringMassSystem system = MakeRope(nodes, springs);
-    if (viscoelastic) system.effects = {{"viscoelastic", Eigen::Vector2d(0.5, 0.02)}};
+    if (effect) system.effects = {{effect->name(), effect->Starts(system)[0]}};
     return system;
   }
   Environment Surroundings() const {
@@ -74,6 +76,14 @@ void Measure(benchmark::State& state, void (Rope<Real>::*function)(), const Case
       kSubsteps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+std::vector<const Effect*> EffectsAlongSprings() {
+  std::vector<const Effect*> along;
+  for (const Effect* effect : AllEffects()) {
+    if (effect->MakeTension(Eigen::VectorXd::Zero(effect->value_count()))) along.push_back(effect);
+  }
+  return along;
+}
+
 template <class Real>
 void Register(const char* precision) {
   constexpr int kSizes[][2] = {{45, 250}, {838, 7344}, {1050, 10099}, {1243, 13129}, {2000, 30000}};
@@ -82,17 +92,19 @@ void Register(const char* precision) {
     for (const char* name : {"scalar", "avx2"}) {
       const Kernel<Real>* kernel = FindKernel<Real>(name);
       if (kernel == nullptr) continue;
-      const auto add = [&](const char* what, void (Rope<Real>::*function)(), bool ground,
-                           bool viscoelastic) {
+      const auto add = [&](const std::string& what, void (Rope<Real>::*function)(), bool ground,
+                           const Effect* effect = nullptr) {
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}/{}/{}", what, precision, name, nodes, springs).c_str(),
-            Measure<Real>, function, Case{nodes, springs, ground, viscoelastic}, *kernel);
+            Measure<Real>, function, Case{nodes, springs, ground, effect}, *kernel);
       };
-      add("free", &Rope<Real>::Forward, false, false);
-      add("forward", &Rope<Real>::Forward, true, false);
-      add("gradient", &Rope<Real>::Gradient, true, false);
-      add("forward_viscoelastic", &Rope<Real>::Forward, true, true);
-      add("gradient_viscoelastic", &Rope<Real>::Gradient, true, true);
+      add("free", &Rope<Real>::Forward, false);
+      add("forward", &Rope<Real>::Forward, true);
+      add("gradient", &Rope<Real>::Gradient, true);
+      for (const Effect* effect : EffectsAlongSprings()) {
+        add("forward_" + effect->name(), &Rope<Real>::Forward, true, effect);
+        add("gradient_" + effect->name(), &Rope<Real>::Gradient, true, effect);
+      }
     }
   }
 }

@@ -8,16 +8,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "rollout/effects/registry.h"
 #include "twin/error.h"
 
 namespace physpring {
 namespace {
-
-constexpr char kPlace[] = "where in the reference configuration; default: the free end";
-constexpr char kAnchor[] = "the world point; default: the place";
-constexpr char kWind[] = "velocity of the air: option wind";
-constexpr char kForce[] = "shared by mass: xfrc_applied";
-constexpr char kCentre[] = "middle of its way; default: 0.1 m below the body";
 
 const EffectKey& Find(const std::string& name) {
   const std::vector<EffectKey>& keys = EffectKeys();
@@ -42,55 +37,19 @@ std::string Bounds(const EffectKey& key) {
 }  // namespace
 
 const std::vector<EffectKey>& EffectKeys() {
-  static const std::vector<EffectKey> kKeys = {
-      {"air_drag.drag_kg_per_m", 0, 100, true,
-       "quadratic drag of the whole body: option density, MuJoCo's fluid forces"},
-      {"air_drag.wind_x_m_per_s", -30, 30, false, kWind},
-      {"air_drag.wind_y_m_per_s", -30, 30, false, kWind},
-      {"air_drag.wind_z_m_per_s", -30, 30, false, kWind},
-      {"control_latency.latency_s", 0, 2, true, "mocap bodies move so much later than recorded"},
-      {"dry_friction.force_n", 0, 1e3, true, "frictionloss of tendons; on flexes along each edge"},
-      {"dry_friction.slip_strain", 0, 1, true, "frictionloss k L slip_strain of tendons"},
-      {"gravity_direction.tilt_x_rad", -1.5, 1.5, true, "gravity is turned about x"},
-      {"gravity_direction.tilt_y_rad", -1.5, 1.5, true, "gravity is turned about y"},
-      {"ground_contact.friction_change", -2, 2, true, "friction with the ground, added to its own"},
-      {"mass_distribution.mass_kg", 0, 100, true, "mass of the body next to the place"},
-      {"mass_distribution.place_x_m", -100, 100, false, kPlace},
-      {"mass_distribution.place_y_m", -100, 100, false, kPlace},
-      {"mass_distribution.place_z_m", -100, 100, false, kPlace},
-      {"moving_attraction.strength_n_m2", -10, 10, true,
-       "attraction of the whole body, strength / r^2, to a point that circles: xfrc_applied"},
-      {"moving_attraction.radius_m", 0, 10, false, "of its horizontal circle; default: 0.12"},
-      {"moving_attraction.rate_rad_per_s", -100, 100, false, "at which it goes round; default: 8"},
-      {"moving_attraction.centre_x_m", -100, 100, false, kCentre},
-      {"moving_attraction.centre_y_m", -100, 100, false, kCentre},
-      {"moving_attraction.centre_z_m", -100, 100, false, kCentre},
-      {"rest_length.strain_low_end", -0.8, 4, true,
-       "of rest lengths at the low end of the body's longest axis, linear up to the other end"},
-      {"rest_length.strain_high_end", -0.8, 4, true, "at the other end"},
-      {"stiffening.cubic_n_per_m3", 0, 1e9, true,
-       "third stiffness coefficient of tendons; on flexes along each edge"},
-      {"stiffening.cubic_stiffness_ratio", 0, 1e4, true,
-       "third stiffness coefficient k ratio / L^2 of tendons"},
-      {"stiffness_drift.relative_rate_per_s", -2, 2, true,
-       "all elastic stiffness times 1 + rate t, at least 0.1"},
-      {"tension_only.slack_share", 0, 1, true, "1: springlength of tendons is \"0 L\"; or 0"},
-      {"tether.stiffness_n_per_m", 0, 1e4, true,
-       "a tendon of length 0 from the place to a world point"},
-      {"tether.damping_n_s_per_m", 0, 100, false, "of that tendon, along it; default: 0"},
-      {"tether.place_x_m", -100, 100, false, kPlace},
-      {"tether.place_y_m", -100, 100, false, kPlace},
-      {"tether.place_z_m", -100, 100, false, kPlace},
-      {"tether.anchor_x_m", -100, 100, false, kAnchor},
-      {"tether.anchor_y_m", -100, 100, false, kAnchor},
-      {"tether.anchor_z_m", -100, 100, false, kAnchor},
-      {"uniform_force.force_x_n", -1e3, 1e3, true, kForce},
-      {"uniform_force.force_y_n", -1e3, 1e3, true, kForce},
-      {"uniform_force.force_z_n", -1e3, 1e3, true, kForce},
-      {"uniform_force.period_s", 1e-3, 1e3, false,
-       "the force times sin(2 pi t / period); default: constant"},
-      {"yield.yield_strain", 0, 10, true, "springyield of tendons, yield strain of flexes"},
-  };
+  static const std::vector<EffectKey> kKeys = [] {
+    std::vector<const SceneEffect*> effects = AllSceneEffects();
+    std::sort(effects.begin(), effects.end(),
+              [](const auto* p, const auto* q) { return p->name() < q->name(); });
+    std::vector<EffectKey> keys;
+    for (const SceneEffect* effect : effects) {
+      for (EffectKey key : effect->keys()) {
+        key.name = effect->name() + "." + key.name;
+        keys.push_back(key);
+      }
+    }
+    return keys;
+  }();
   return kKeys;
 }
 

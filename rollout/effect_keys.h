@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The effects that a simulated scene can get besides what its file tells, as a user names them:
 // EFFECT.PARAMETER, with the names and units of a diagnosis' report where it has the effect, too.
-// What they do is in undeclared_effects.h.
+// What each does is said in its file in rollout/effects/.
 #ifndef PHYSPRING_ROLLOUT_EFFECT_KEYS_H_
 #define PHYSPRING_ROLLOUT_EFFECT_KEYS_H_
 
@@ -9,17 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "rollout/effects/scene_effect.h"
+
 namespace physpring {
 
-struct EffectKey {
-  std::string name;  // "tether.stiffness_n_per_m"
-  double low, high;  // bounds of the value
-  bool amount;       // without it, or with 0, the effect is not there
-  std::string what;  // what MuJoCo does, for people
-
-  std::string effect() const { return name.substr(0, name.find('.')); }
-};
-
+// In the order of their effects' names.
 const std::vector<EffectKey>& EffectKeys();
 
 // Values by name.

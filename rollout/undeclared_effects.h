@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects that a scene has and its recording does not tell of, for trying a diagnosis on. All are
-// MuJoCo's own (tendons, flexes, bodies and options), or forces from outside; none of a twin's
-// effects is used. Names and units: effect_keys.h.
-//
-// What depends on time begins at time 0, the recording's first frame. Attraction: a particle of
-// mass m of a body of mass M, at the distance d from the moving point, feels
-//   F = strength m / M  d / (|d|^2 + 0.03^2)^(3/2)
+// Effects that a scene has and its recording does not tell of, for trying a diagnosis on. What each
+// does to the scene is in its file in rollout/effects/; here they act together.
 #ifndef PHYSPRING_ROLLOUT_UNDECLARED_EFFECTS_H_
 #define PHYSPRING_ROLLOUT_UNDECLARED_EFFECTS_H_
 
@@ -15,7 +10,8 @@
 #include <vector>
 
 #include "rollout/effect_keys.h"
-#include "rollout/soft_points.h"
+#include "rollout/effects/scene_body.h"
+#include "rollout/effects/scene_effect.h"
 
 namespace physpring {
 
@@ -27,7 +23,7 @@ class UndeclaredEffects {
   UndeclaredEffects(const SceneEffects& effects, const mjModel& plain, const SoftPoints& soft,
                     const std::string& where);
 
-  bool empty() const { return values_.empty(); }
+  bool empty() const { return given_.empty(); }
 
   // Before the scene with effects is compiled: its tendons and flex, and new tendons.
   void Edit(mjSpec* spec) const;
@@ -39,33 +35,21 @@ class UndeclaredEffects {
   void Drive(double time, mjModel* model, mjData* data) const;
 
   // How much later than recorded the mocap bodies move, s.
-  double latency() const { return Value("control_latency.latency_s"); }
+  double latency() const;
 
  private:
-  bool Has(const std::string& effect) const;  // with an amount other than 0
-  double Value(const std::string& key, double otherwise = 0) const;
-  Eigen::Vector3d Vector(const std::string& key, const std::string& unit,
-                         const Eigen::Vector3d& otherwise) const;
-  std::string WhyNot(const EffectKey& key) const;  // the scene cannot have it; empty if it can
+  struct Given {
+    const SceneEffect* effect;
+    EffectAmounts amounts;
 
-  int Place(const std::string& effect) const;  // the particle next to it, of `particles_`
-  double RestStrain(const Eigen::Vector3d& place) const;
-  double AirDensity(mjModel* model) const;
-  void EditTendons(mjSpec* spec) const;
-  void AddEdgeTendons(mjSpec* spec) const;
-  void AddTether(mjSpec* spec) const;
-  std::string SiteOn(int element, mjSpec* spec) const;  // its name; makes one on a flex's vertex
-  void ChangeMass(mjModel* model) const;
-  void ChangeFriction(mjModel* model) const;
-  void ChangeFlexLengths(mjModel* model) const;
-  void DriveForces(double time, mjModel* model, mjData* data) const;
+    bool has_amount() const;  // other than 0
+  };
 
-  SceneEffects values_;  // only those of effects that are there
-  const mjModel& plain_;
-  const SoftPoints& soft_;
-  std::vector<int> particles_;  // elements, points before interior
-  Points reference_, held_;     // particles and controllers in the reference configuration, m
-  Points vertices_, sites_;     // all of the model, there, m
+  // Throws Error if the body cannot have one of the effects.
+  void ExpectPossible(const std::string& where) const;
+
+  SceneBody body_;
+  std::vector<Given> given_;  // only those that are there
 };
 
 }  // namespace physpring

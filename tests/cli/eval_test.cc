@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/film_triple.h"
 #include "tests/support/program.h"
 #include "tests/support/small_twin.h"
 #include "tests/support/temporary_folder.h"
@@ -312,25 +313,6 @@ TEST_F(Eval, WritesNamesIntoThePageAsText) {
   ASSERT_EQ(RunProgram({"eval", path_, swing_, "--picture", page}).status, 0);
   EXPECT_EQ(ReadFile(page).find(twin_.name), std::string::npos);
   EXPECT_NE(ReadFile(page).find("&lt;script&gt;&amp;"), std::string::npos);
-}
-
-// Three numbers from the 16-bit data of the film, in steps.
-Eigen::Vector3d DecodeTriple(const std::string& base64, std::size_t triple) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const auto bits = [&](std::size_t bit) {
-    const auto digit = digits.find(base64.at(bit / 6));
-    return digit >> (5 - bit % 6) & 1;
-  };
-  Eigen::Vector3d values = Eigen::Vector3d::Zero();
-  for (int j = 0; j < 3; ++j) {
-    for (int byte = 0; byte < 2; ++byte) {  // little endian
-      for (int k = 0; k < 8; ++k) {
-        const std::size_t bit = (triple * 6 + 2 * j + byte) * 8 + k;
-        values[j] += std::ldexp(bits(bit), 8 * byte + 7 - k);
-      }
-    }
-  }
-  return values;
 }
 
 TEST_F(Eval, ShowsTheMotionInTheFilm) {

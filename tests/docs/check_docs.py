@@ -10,7 +10,7 @@ and exits with status 1; prints nothing and exits with 0 if all is right:
     cells      no table cell of README.md, CONTRIBUTING.md and docs/ is over 30 words
     decisions  docs/decisions/NNN-*.md have Status, Decision, Against and Measured, at most 150
                words, a number of their own, and are in the index
-    effects    the table of docs/physics.md has the effects of twin/effects/registry.cc, no others
+    effects    the table of docs/physics.md has the effects of twin/effects/list.h, no others
     commands   in code blocks of README.md and docs/, commands and flags of lines that begin with
                `physpring ` are in the program's help
 """
@@ -136,9 +136,9 @@ def check_decisions(texts):
 
 
 def check_effects(root, texts):
-    registry = (root / "twin/effects/registry.cc").read_text(encoding="utf-8")
+    registry = (root / "twin/effects/list.h").read_text(encoding="utf-8")
     known = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
-             for name in re.findall(r"\bEFFECT\((\w+)\)", registry)}
+             for name in re.findall(r"^ +(?:TWIN|BOTH)\((\w+)\)", registry, re.MULTILINE)}
     page = pathlib.Path("docs/physics.md")
     table = re.search(r"^\| effect \|.*\n((?:\|.*\n)*)", texts[page], re.MULTILINE)
     told = set(re.findall(r"^\| `(\w+)`", table.group(1) if table else "", re.MULTILINE))

@@ -1,96 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/record.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
-#include "tests/support/scene_test.h"
-#include "twin/error.h"
+#include "tests/rollout/record_scene.h"
 
 namespace physpring {
 namespace {
-
-// A scene around what is between <worldbody> and </keyframe>: a floor, one hand, and keys.
-std::string Scene(const std::string& bodies, const std::string& equalities,
-                  const std::string& keys) {
-  return fmt::format(R"(
-    <mujoco>
-      <option timestep="0.002" integrator="discrete" solver="CG" iterations="500"/>
-      <default><equality solref="0.004 1" solimp="0.99 0.999 0.001"/></default>
-      <worldbody>
-        <geom type="plane" size="1 1 0.1" pos="0 0 -0.5"/>
-        <body name="hand" mocap="true" pos="-0.04 -0.03 0.5">
-          <geom type="sphere" size="0.01" mass="3" contype="0" conaffinity="0"/>
-        </body>
-        {}
-      </worldbody>
-      <equality>{}</equality>
-      <keyframe>{}</keyframe>
-    </mujoco>)",
-                     bodies, equalities, keys);
-}
-
-// 5 x 4 vertices, 20 mm apart, the first in the hand
-constexpr char kSheet[] = R"(
-  <flexcomp name="sheet" type="grid" dim="2" count="5 4 1" spacing="0.02 0.02 0.02" pos="0 0 0.5"
-            mass="0.05" radius="0.002">
-    <elasticity young="1e4" poisson="0.2" thickness="0.002" damping="0.01" elastic2d="both"/>
-    <contact selfcollide="none"/>
-  </flexcomp>)";
-constexpr char kTwoTies[] = R"(
-  <connect body1="sheet_0" body2="hand" anchor="0 0 0"/>
-  <connect body1="sheet_1" body2="hand" anchor="0 0 0"/>)";
-constexpr char kLift[] = R"(
-  <key time="0" mpos="-0.04 -0.03 0.5"/>
-  <key time="0.3" mpos="0.06 -0.03 0.7"/>
-  <key time="0.5" mpos="0.06 -0.03 0.7"/>)";
-
-// Vertices 0-1 are a spring from the hand, 2-3 are on their own.
-constexpr char kTwoLines[] = R"(
-  <body name="a"><joint type="slide" axis="0 0 1"/><geom size="0.01" mass="0.1" contype="0"
-                                                          conaffinity="0"/></body>
-  <body name="b" pos="0 0 3"><joint type="slide" axis="0 0 1"/><geom size="0.01" mass="0.1"
-                                                          contype="0" conaffinity="0"/></body>
-  <body name="c" pos="0.1 0 3"><joint type="slide" axis="0 0 1"/><geom size="0.01" mass="0.1"
-                                                          contype="0" conaffinity="0"/></body>
-  </worldbody>
-  <deformable><flex name="lines" dim="1" body="hand a b c" element="0 1 2 3">
-    <edge stiffness="10"/></flex></deformable>
-  <worldbody>)";
-
-class RecordSceneTest : public SceneTest {
- protected:
-  std::string SheetScene() const { return WriteScene(Scene(kSheet, kTwoTies, kLift)); }
-
-  std::string TwoLinesScene() const {
-    std::string scene = Scene(kTwoLines, "", kLift);
-    scene.replace(scene.find("discrete"), 8, "Euler");  // edge stiffness wants it
-    return WriteScene(scene);
-  }
-
-  // The message of the Error, which must be one line that begins with the scene's path.
-  static std::string ErrorOf(const std::string& path, const RecordOptions& options = {}) {
-    try {
-      RecordScene(path, options);
-    } catch (const Error& error) {
-      std::string message = error.what();
-      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-      EXPECT_EQ(message.find(path), 0u) << message;
-      return message;
-    }
-    ADD_FAILURE() << "no Error";
-    return "";
-  }
-
-  void ExpectRefused(const std::string& mjcf, const std::string& reason) const {
-    const std::string message = ErrorOf(WriteScene(mjcf));
-    EXPECT_NE(message.find(reason), std::string::npos) << message;
-  }
-};
 
 std::string Bytes(const std::string& path) {
   std::ostringstream bytes;
@@ -259,91 +177,6 @@ TEST_F(RecordSceneTest, WarnsOfGeomsThatARecordingDoesNotHold) {
       RecordScene(WriteScene(Scene(kSheet + box, kTwoTies, kLift)), {.duration = 0.1});
   ASSERT_EQ(recording.warnings.size(), 1u);
   EXPECT_NE(recording.warnings[0].find("1 geom"), std::string::npos) << recording.warnings[0];
-}
-
-TEST_F(RecordSceneTest, RefusesMissingFile) { ErrorOf(folder_.File("missing.xml")); }
-
-TEST_F(RecordSceneTest, RefusesWhatIsNotXml) { ExpectRefused("PK\x03\x04 no scene", "XML"); }
-
-TEST_F(RecordSceneTest, RefusesSceneThatDoesNotCompile) {
-  ExpectRefused(Scene(kSheet, "<connect body1='nobody' body2='hand' anchor='0 0 0'/>", kLift),
-                "nobody");
-}
-
-TEST_F(RecordSceneTest, RefusesSceneWithoutFlex) {
-  ExpectRefused(Scene("", "", kLift), "has 0 flexes");
-}
-
-TEST_F(RecordSceneTest, RefusesTwoFlexes) {
-  std::string second = kSheet;
-  second.replace(second.find("sheet"), 5, "other");
-  ExpectRefused(Scene(kSheet + second, kTwoTies, kLift), "has 2 flexes");
-}
-
-TEST_F(RecordSceneTest, RefusesSceneWithoutMocapBody) {
-  std::string scene = Scene(kSheet, "", "<key time='1'/>");
-  scene.replace(scene.find("mocap=\"true\""), 12, "");
-  ExpectRefused(scene, "no mocap body");
-}
-
-TEST_F(RecordSceneTest, RefusesFlexThatNobodyHolds) {
-  ExpectRefused(Scene(kSheet, "", kLift), "no mocap body holds the flex");
-}
-
-TEST_F(RecordSceneTest, IgnoresInactiveTies) {
-  ExpectRefused(
-      Scene(kSheet, "<connect body1='sheet_0' body2='hand' anchor='0 0 0' active='false'/>", kLift),
-      "no mocap body holds the flex");
-}
-
-TEST_F(RecordSceneTest, RefusesSceneWithoutKeyframes) {
-  ExpectRefused(Scene(kSheet, kTwoTies, ""), "no keyframes");
-}
-
-TEST_F(RecordSceneTest, RefusesKeyframesOutOfOrder) {
-  ExpectRefused(Scene(kSheet, kTwoTies, "<key time='1'/><key time='0.5'/>"), "times must increase");
-}
-
-TEST_F(RecordSceneTest, RefusesMotionWithoutDuration) {
-  ExpectRefused(Scene(kSheet, kTwoTies, "<key time='0'/>"), "last keyframe");
-}
-
-TEST_F(RecordSceneTest, RefusesInterpolatedFlex) {
-  ExpectRefused(Scene(R"(<flexcomp name="sheet" type="grid" dim="3" count="3 3 3" dof="trilinear"
-                         spacing="0.1 0.1 0.1" radius="0.01"><elasticity young="1e4"/>
-                         </flexcomp>)",
-                      "", kLift),
-                "interpolated");
-}
-
-TEST_F(RecordSceneTest, RefusesFlexInsideMocapBody) {
-  const std::string carried = R"(
-    <body name="carrier" mocap="true"><flexcomp name="rope" type="grid" dim="1" count="5 1 1"
-      spacing="0.1 0.1 0.1" mass="0.1" radius="0.005"><edge equality="true"/><pin id="0"/>
-    </flexcomp></body>)";
-  ExpectRefused(Scene(carried, "", kLift), "carry it along");
-}
-
-TEST_F(RecordSceneTest, RefusesTwoGrounds) {
-  const std::string wall = "<geom type='plane' size='1 1 0.1' pos='3 0 0' zaxis='-1 0 0'/>";
-  ExpectRefused(Scene(kSheet + wall, kTwoTies, kLift), "two ground planes");
-}
-
-TEST_F(RecordSceneTest, RefusesUnstableSimulation) {
-  std::string scene = Scene(kSheet, kTwoTies, kLift);
-  scene.replace(scene.find("discrete"), 8, "Euler");
-  scene.replace(scene.find("1e4"), 3, "1e9");
-  ExpectRefused(scene, "unstable");
-}
-
-TEST_F(RecordSceneTest, RefusesOptionsOutOfRange) {
-  const std::string scene = SheetScene();
-  EXPECT_NE(ErrorOf(scene, {.noise = -1}).find("noise is -1"), std::string::npos);
-  EXPECT_NE(ErrorOf(scene, {.occlusion = 1}).find("occlusion is 1"), std::string::npos);
-  EXPECT_NE(ErrorOf(scene, {.vary = std::nan("")}).find("vary is nan"), std::string::npos);
-  EXPECT_NE(ErrorOf(scene, {.duration = -2}).find("duration is -2"), std::string::npos);
-  EXPECT_NE(ErrorOf(scene, {.duration = 0.01}).find("1 frames"), std::string::npos);
-  EXPECT_NE(ErrorOf(scene, {.fps = 0}).find("fps is 0"), std::string::npos);
 }
 
 // The scenes that the demo uses: points, interior, controllers.

@@ -1,115 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each undeclared effect does to the motion, against closed forms and against integrations of
-// one degree of freedom here. The scene: a body of 0.1 kg on a vertical spring of 10 N/m and 0.1 m
-// under a hand, and two more such bodies that hold on to each other and to nothing else. The
-// springs are tendons, or the edges of a flex.
+// one degree of freedom here.
 #include "rollout/undeclared_effects.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "rollout/record.h"
-#include "tests/support/scene_test.h"
-#include "twin/error.h"
+#include "tests/rollout/undeclared_scene.h"
 
 namespace physpring {
 namespace {
 
-constexpr double kStep = 1e-4, kMass = 0.1, kSpring = 10, kGravity = 9.81;  // s, kg, N/m, m/s^2
-constexpr double kFps = 50, kDuration = 0.5;
-constexpr int kHanging = 0, kFree = 1, kPair = 2;  // points
-
-enum class Springs { kTendons, kEdges };
-
-struct SceneOptions {
-  Springs springs = Springs::kTendons;
-  std::string gravity = "0 0 -9.81";
-  double below = 0.1;  // m, of the hanging body under the hand
-  double later = 0;    // s, of the keys
-  std::string free_place = "0.3 0 0.5", geom = "contype='0' conaffinity='0'";
-  std::string ground = {};
-  double step = kStep;  // s
-};
-
-std::string SceneOf(const SceneOptions& options) {
-  const bool tendons = options.springs == Springs::kTendons;
-  const auto body = [&](const char* name, const std::string& place) {
-    return fmt::format(
-        R"(<body name="{}" pos="{}"><joint type="slide" axis="1 0 0"/>
-           <joint type="slide" axis="0 1 0"/><joint type="slide" axis="0 0 1"/>
-           <geom size="0.02" mass="{}" friction="0.2" {}/><site name="{}"/></body>)",
-        name, place, kMass, options.geom, name);
-  };
-  const auto spring = [](const char* p, const char* q) {
-    return fmt::format(R"(<spatial stiffness="{}" springlength="0.1"><site site="{}"/>
-                          <site site="{}"/></spatial>)",
-                       kSpring, p, q);
-  };
-  return fmt::format(
-      R"(<mujoco><option timestep="{}" integrator="Euler" gravity="{}"/>
-         <worldbody>{}<body name="hand" mocap="true" pos="0 0 0.5"><site name="hand"/></body>{}{}{}
-         </worldbody>{}
-         <keyframe><key time="0" mpos="0 0 0.5"/><key time="{}" mpos="0 0 0.5"/>
-         <key time="{}" mpos="0.02 0 0.6"/></keyframe></mujoco>)",
-      options.step, options.gravity, options.ground,
-      body("hanging", fmt::format("0 0 {}", 0.5 - options.below)), body("free", options.free_place),
-      body("pair", "0.4" + options.free_place.substr(3)),
-      tendons ? "<tendon>" + spring("hand", "hanging") + spring("free", "pair") + "</tendon>"
-              : fmt::format(R"(<deformable><flex name="lines" dim="1" body="hand hanging free pair"
-                   element="0 1 2 3"><edge stiffness="{}"/><contact contype="0" conaffinity="0"/>
-                   </flex></deformable>)",
-                            kSpring),
-      1 + options.later, 2 + options.later);
-}
-
-// z(t) of one degree of freedom from rest, at the frames, as MuJoCo's Euler integrates it.
-std::vector<double> Integrate(const std::function<double(double t, double z, double v)>& rate) {
-  std::vector<double> z_at;
-  double z = 0, v = 0;
-  for (int step = 0; step <= std::lround(kDuration / kStep); ++step) {
-    if (step % std::lround(1 / (kFps * kStep)) == 0) z_at.push_back(z);
-    v += kStep * rate(step * kStep, z, v);
-    z += kStep * v;
-  }
-  return z_at;
-}
-
-class UndeclaredEffectsTest : public SceneTest, public testing::WithParamInterface<Springs> {
- protected:
-  Recording Record(const SceneOptions& scene, const SceneEffects& effects) const {
-    RecordOptions options{.duration = kDuration, .fps = kFps};
-    options.effects = effects;
-    return RecordScene(WriteScene(SceneOf(scene)), options);
-  }
-
-  // A point's way along an axis is that of the integration, up to `tolerance`.
-  static void ExpectWay(const Recording& recording, int point, int axis,
-                        const std::vector<double>& expected, double tolerance) {
-    double moved = 0;
-    for (std::size_t frame = 0; frame < expected.size(); ++frame) {
-      const double way = recording.points[frame](axis, point) - recording.points[0](axis, point);
-      EXPECT_NEAR(way, expected[frame], tolerance) << "frame " << frame;
-      moved = std::max(moved, std::abs(way));
-    }
-    EXPECT_GT(moved, 100 * tolerance);  // else the test would say nothing
-  }
-
-  std::string ErrorOf(const SceneOptions& scene, const SceneEffects& effects) const {
-    try {
-      Record(scene, effects);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-};
-
-// The same equation, step by step: rounding only.
-constexpr double kSame = 1e-9;
+class UndeclaredEffectsTest : public UndeclaredScene,
+                              public testing::WithParamInterface<Springs> {};
 
 TEST_P(UndeclaredEffectsTest, WithoutAnyTheBodyHangsOnItsSpring) {
   const Recording recording = Record({.springs = GetParam()}, {});
@@ -291,131 +194,6 @@ INSTANTIATE_TEST_SUITE_P(Of, UndeclaredEffectsTest,
                          testing::Values(Springs::kTendons, Springs::kEdges), [](const auto& one) {
                            return one.param == Springs::kTendons ? "Tendons" : "Edges";
                          });
-
-class TendonScene : public UndeclaredEffectsTest {};
-
-TEST_F(TendonScene, RatioAndSlipStrainAreOfTheSpring) {
-  // k r / L^2 = 900, k L s = 0.3
-  const Recording ratio = Record({}, {{"stiffening.cubic_stiffness_ratio", 0.9}});
-  const Recording cubic = Record({}, {{"stiffening.cubic_n_per_m3", 900}});
-  const Recording slip = Record({}, {{"dry_friction.slip_strain", 0.3}});
-  const Recording force = Record({}, {{"dry_friction.force_n", 0.3}});
-  EXPECT_LT((ratio.points.back() - cubic.points.back()).norm(), 1e-9);
-  EXPECT_LT((slip.points.back() - force.points.back()).norm(), 1e-9);
-}
-
-TEST_F(TendonScene, SlackSpringDoesNotPush) {
-  // 0.2 m above where the spring begins to pull, on the other side of the hand: nothing holds it
-  const Recording recording = Record({.below = -0.09}, {{"tension_only.slack_share", 1}});
-  const auto fall = Integrate([](double, double, double) { return -kGravity; });
-  for (std::size_t frame = 0; frame < 8; ++frame) {  // 0.13 m
-    EXPECT_NEAR(recording.points[frame](2, kHanging) - 0.59, fall[frame], kSame);
-  }
-  const Recording pushed = Record({.below = -0.09}, {});
-  EXPECT_GT(std::abs(pushed.points[7](2, kHanging) - 0.59 - fall[7]), 1e-3);
-}
-
-TEST_F(TendonScene, YieldedSpringPullsWithItsLimit) {
-  // at the strain 0.5: k 0.05 m = 0.5 N, then constant
-  const Recording recording = Record({}, {{"yield.yield_strain", 0.5}});
-  double plastic = 0;
-  ExpectWay(recording, kHanging, 2, Integrate([&](double, double z, double) {
-              plastic = std::clamp(plastic, -z - 0.05, -z + 0.05);
-              return -kSpring * (z + plastic) / kMass - kGravity;
-            }),
-            1e-4);  // MuJoCo updates the rest length at another moment of the step
-}
-
-TEST_F(TendonScene, FrictionWithTheGroundChanges) {
-  SceneOptions scene{.gravity = "5 0 -9.81", .free_place = "0.3 0 0.02"};
-  scene.ground = "<geom type='plane' size='1 1 1' friction='0.3'/>";
-  scene.geom = "condim='3'";
-  const Recording recording = Record(scene, {{"ground_contact.friction_change", -0.2}});
-  const double t = kDuration;  // slides with g_x - mu g_z; soft contacts: 2 %
-  const double way = (5 - (0.3 - 0.2) * kGravity) * t * t / 2;
-  EXPECT_NEAR(recording.points.back()(0, kFree) - 0.3, way, 0.02 * way);
-}
-
-TEST_F(TendonScene, RecordsSitesOfTendons) {
-  const Recording recording = Record({}, {});
-  EXPECT_EQ(recording.point_count(), 3);
-  EXPECT_EQ(recording.controller_count(), 1);
-  EXPECT_NEAR(recording.mass, 3 * kMass, 1e-12);
-}
-
-constexpr char kSheet[] = R"(
-  <mujoco><option timestep="0.001" gravity="0 0 {}" integrator="discrete" solver="CG"
-    iterations="500"/><worldbody><body name="hand" mocap="true" pos="0 0 0.5"/>
-    <flexcomp name="sheet" type="grid" dim="2" count="5 5 1" spacing="0.02 0.02 0.02" mass="0.05"
-      pos="0 0 0.5" radius="0.002"><elasticity young="3e4" poisson="0.2" thickness="0.002"
-      damping="0.1" elastic2d="both"/><contact selfcollide="none"/></flexcomp></worldbody>
-    <equality><connect body1="sheet_12" body2="hand" anchor="0 0 0"/></equality>
-    <keyframe><key time="0" mpos="0 0 0.5"/><key time="2" mpos="0 0 0.5"/></keyframe></mujoco>)";
-
-// Finite elements of other rest lengths are larger by as much.
-TEST_F(TendonScene, SheetGrowsToItsRestLength) {
-  RecordOptions options;
-  options.effects = {{"rest_length.strain_low_end", 0.1}, {"rest_length.strain_high_end", 0.1}};
-  const Recording recording = RecordScene(WriteScene(fmt::format(kSheet, 0)), options);
-  const Points& last = recording.points.back();
-  const double before = (recording.points[0].col(0) - recording.points[0].col(23)).norm();
-  EXPECT_NEAR((last.col(0) - last.col(23)).norm() / before, 1.1, 0.005);  // still swings a little
-}
-
-TEST_F(TendonScene, SheetThatYieldsSagsMore) {
-  RecordOptions options;
-  const std::string scene = WriteScene(fmt::format(kSheet, -9.81));
-  const Recording elastic = RecordScene(scene, options);
-  options.effects = {{"yield.yield_strain", 0.002}};
-  const Recording yielding = RecordScene(scene, options);
-  EXPECT_LT(yielding.points.back().row(2).minCoeff(),
-            elastic.points.back().row(2).minCoeff() - 1e-3);
-}
-
-TEST_F(TendonScene, RefusesWhatTheSceneCannotHave) {
-  const SceneOptions flex{.springs = Springs::kEdges};
-  for (const char* name : {"tension_only.slack_share", "yield.yield_strain",
-                           "dry_friction.slip_strain", "ground_contact.friction_change"}) {
-    const std::string message = ErrorOf(flex, {{name, 1}});
-    EXPECT_NE(message.find(fmt::format("scene.xml: cannot have the effect {}: ", name)),
-              std::string::npos)
-        << message;
-    EXPECT_NE(message.find("it can have air_drag.drag_kg_per_m, "), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-  }
-  EXPECT_NE(ErrorOf({}, {{"tension_only.slack_share", 0.5}}).find("wholly"), std::string::npos);
-}
-
-TEST_F(TendonScene, RefusesAnEffectWithoutAmount) {
-  EXPECT_NE(ErrorOf({}, {{"air_drag.wind_x_m_per_s", 1}})
-                .find("air_drag.wind_x_m_per_s needs air_drag.drag_kg_per_m, too"),
-            std::string::npos);
-}
-
-TEST(ParseEffectTest, ReadsNameAndValue) {
-  const auto [name, value] = ParseEffect("tether.anchor_x_m=-0.5");
-  EXPECT_EQ(name, "tether.anchor_x_m");
-  EXPECT_EQ(value, -0.5);
-}
-
-TEST(ParseEffectTest, RefusesOtherNamesAndValues) {
-  const auto expect = [](const std::string& text, const std::string& part) {
-    try {
-      ParseEffect(text);
-      ADD_FAILURE() << text;
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
-  };
-  expect("wind=3", "there is no effect 'wind', but air_drag.wind_x_m_per_s, ");
-  expect("yield.strain=1", "there is no effect 'yield.strain', but yield.yield_strain");
-  expect("magnet=1", "there is no effect 'magnet', but air_drag, control_latency, ");
-  expect("", "there is no effect '', but air_drag, ");
-  for (const char* value : {"", "=", "=x", "=1x", "=nan", "=inf", "=-1", "=1e9"}) {
-    expect(std::string("mass_distribution.mass_kg") + value,
-           "mass_distribution.mass_kg takes a number from 0 to 100, not '");
-  }
-}
 
 }  // namespace
 }  // namespace physpring

@@ -11,23 +11,42 @@
 namespace physpring {
 namespace {
 
-// Where the curvature of a rod of length l that slips begins to matter, kSlip / l.
+// A rod of length l begins to slip at the curvature kSlip / l.
 constexpr double kSlip = 5;
-// The rigidity that would matter to a rod of length l and weight m g is kRigidity m g l^2; friction
-// holds kFriction of its moment at the curvature where it slips.
-constexpr double kRigidity = 3e-3, kFriction = 0.3;
-// A little damping, which is not fitted, calms the shortest waves at this rate, 1/s; more of it
-// would serve fits under an observer, but not free motions.
-constexpr double kCalm = 100;
+// The rigidity that would matter to a rod of length l and weight m g is kRigidity m g l^2.
+constexpr double kRigidity = 3e-3;
 // Strands that stick and slip make a chain's motions rough: longer differences see its slopes. And
 // so many of their coordinates, one after the other, are off alike: they count as one.
 constexpr double kChainDifference = 1e-2, kAlike = 30;
 constexpr double kSimpler = 0.9;  // it has a tenth of a net's parameters: a tie is its
-constexpr int kFitted = 4;        // effects, the last ones of a chain, are fitted
 
 double RodLength(const Eigen::VectorXd& order) { return order.maxCoeff() - order.minCoeff(); }
 
 bool Bends(const EffectValues& effect) { return GetEffect(effect.name).bends(); }
+
+std::vector<const Effect*> EffectsOfRods(RodPart part) {
+  std::vector<const Effect*> effects;
+  for (const Effect* effect : AllEffects()) {
+    if (effect->rod_part() == part) effects.push_back(effect);
+  }
+  return effects;
+}
+
+double FlexuralRigidity(const std::vector<EffectValues>& effects) {
+  double sum = 0;
+  for (const EffectValues& e : effects) sum += GetEffect(e.name).FlexuralRigidity(e.values);
+  return sum;
+}
+
+// How far a search moves moments of the fitted effects, by their parameters; all have one scale.
+double MomentScale() {
+  for (const Effect* effect : EffectsOfRods(RodPart::kFitted)) {
+    for (const EffectParameter& parameter : effect->parameters()) {
+      if (parameter.is_moment) return parameter.scale;
+    }
+  }
+  return 1;
+}
 
 class BendingChainKind : public BodyKind {
  public:
@@ -38,15 +57,21 @@ class BendingChainKind : public BodyKind {
   // stiffness answers to the curvature where it slips. Its springs are all alike, and how they are
   // damped along it hardly matters: fitted, that would ask for all sub-steps there are.
   void Free(const SpringMassSystem& base, ParameterOptions* options) const override {
-    options->free_effects = kFitted;
+    options->free_effects = static_cast<int>(EffectsOfRods(RodPart::kFitted).size());
     options->length_classes = options->dashpots = false;
-    const EffectValues& bending = *(base.effects.end() - kFitted);
-    const double moment = bending.values[0] * kSlip / RodLength(base.order);
-    options->moment_unit = moment / GetEffect("rest_bend").parameters()[0].scale;
+    const double moment = FlexuralRigidity(base.effects) * kSlip / RodLength(base.order);
+    options->moment_unit = moment / MomentScale();
   }
 
-  // The rigidity, the first value.
-  int SearchedEffect(const Parameters& factors) const override { return factors.effects(); }
+  // The first value of the effect that makes it stiff.
+  int SearchedEffect(const Parameters& factors) const override {
+    int entry = factors.effects();
+    for (const Effect* effect : EffectsOfRods(RodPart::kFitted)) {
+      if (effect->FlexuralRigidity(Eigen::VectorXd::Ones(effect->value_count())) > 0) break;
+      entry += effect->value_count();
+    }
+    return entry;
+  }
 
   LevenbergMarquardtOptions FactorOptions(const Recording& /*recording*/) const override {
     LevenbergMarquardtOptions options;
@@ -62,16 +87,19 @@ std::vector<EffectValues> StartEffects(const Recording& recording) {
   const double length = RodLength(recording.order);
   const double spacing = length / static_cast<double>(recording.order.size() - 1);
   const double gravity = recording.gravity.norm() > 0 ? recording.gravity.norm() : 9.81;
-  const double rigidity = kRigidity * recording.mass * gravity * length * length;
-  const double friction = kFriction * rigidity * kSlip / length;
-  // of an even chain of nodes of mass m at distances l: 16 D / (m l^3)
-  const double node_mass = recording.mass / static_cast<double>(recording.particle_count());
-  const double damping = kCalm * node_mass * std::pow(spacing, 3) / 16;
-  return {{"bending_damping", Eigen::VectorXd::Constant(1, damping)},
-          {"bending", Eigen::VectorXd::Constant(1, rigidity)},
-          {"bending_friction", Eigen::Vector2d(friction, kSlip / length)},
-          {"rest_bend", Eigen::VectorXd::Zero(GetEffect("rest_bend").value_count())},
-          {"twist", Eigen::Vector2d(rigidity, 0)}};
+  const RodTraits rod = {
+      .length = length,
+      .spacing = spacing,
+      .node_mass = recording.mass / static_cast<double>(recording.particle_count()),
+      .flexural_rigidity = kRigidity * recording.mass * gravity * length * length,
+      .slip_angle = kSlip};
+  std::vector<EffectValues> effects;
+  for (const RodPart part : {RodPart::kGiven, RodPart::kFitted}) {
+    for (const Effect* effect : EffectsOfRods(part)) {
+      effects.push_back({effect->name(), effect->StartOfRod(rod)});
+    }
+  }
+  return effects;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ EffectEntries::EffectEntries(std::vector<EffectValues> start, double moment_unit
     const double* value = effect.values.data();
     for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
       const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
-      const double scale = parameter.scale * (parameter.key.ends_with("_n_m") ? moment_unit : 1);
+      const double scale = parameter.scale * (parameter.is_moment ? moment_unit : 1);
       for (int n = 0; n < parameter.count; ++n) {
         entries_.push_back(
             {*value++, parameter.low, parameter.high, scale, logarithmic, parameter.count > 1});

@@ -14,7 +14,7 @@ namespace physpring {
 
 class EffectEntries {
  public:
-  // `moment_unit`: moments (keys that end in _n_m) that are even move by so many of their scales.
+  // `moment_unit`: moments move by so many of their scales.
   explicit EffectEntries(std::vector<EffectValues> start, double moment_unit = 1);
 
   int size() const { return static_cast<int>(entries_.size()); }

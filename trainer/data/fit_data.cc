@@ -54,4 +54,18 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
   return data;
 }
 
+Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool controller_velocity,
+               std::uint64_t seed) {
+  Twin twin;
+  twin.levels.push_back({.system = system});
+  twin.points = recording.point_count();
+  twin.interior = recording.interior_count();
+  twin.order = recording.order;
+  twin.controller_velocity = controller_velocity;
+  twin.fps = recording.fps;
+  twin.gravity = recording.gravity;
+  twin.seed = seed;
+  return twin;
+}
+
 }  // namespace physpring

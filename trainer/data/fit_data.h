@@ -2,10 +2,12 @@
 #ifndef PHYSPRING_TRAINER_DATA_FIT_DATA_H_
 #define PHYSPRING_TRAINER_DATA_FIT_DATA_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "twin/dataset.h"
 #include "twin/recording.h"
+#include "twin/twin.h"
 
 namespace physpring {
 
@@ -21,6 +23,10 @@ struct FitData {
 // frame 0 of what is for fitting, or naming both files if two differ in points, interior particles,
 // controllers or frame rate.
 FitData ReadFitData(const std::vector<RecordingEntry>& entries);
+
+// The dense twin of a recording's object, but for its number of sub-steps a second.
+Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool controller_velocity,
+               std::uint64_t seed);
 
 }  // namespace physpring
 

@@ -25,17 +25,8 @@ Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& dat
   const int substeps = options.substeps > 0 ? options.substeps
                                             : StableSubsteps(ComputeStabilityBound(system),
                                                              1 / first.fps, kStepSafety);
-  Twin twin;
-  TwinLevel& level = twin.levels.emplace_back();
-  level.system = system;
-  level.substeps_per_second = static_cast<int>(std::ceil(substeps * first.fps));
-  twin.points = first.point_count();
-  twin.interior = first.interior_count();
-  twin.order = first.order;
-  twin.controller_velocity = body.controller_velocity;
-  twin.fps = first.fps;
-  twin.gravity = first.gravity;
-  twin.seed = options.seed;
+  Twin twin = DenseTwin(first, system, body.controller_velocity, options.seed);
+  twin.levels[0].substeps_per_second = static_cast<int>(std::ceil(substeps * first.fps));
   return twin;
 }
 

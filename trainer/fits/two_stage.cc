@@ -201,18 +201,10 @@ std::string TwoStage::DescribeBest(const CmaEsState& searched, const FirstOrderS
 
 Twin TwoStage::TwinOf(const SpringMassSystem& system) const {
   const Recording& recording = data_.recordings[0];
-  Twin twin;
-  TwinLevel& level = twin.levels.emplace_back();
-  level.system = system;
-  level.substeps_per_second =
-      static_cast<int>(std::ceil(Substeps(level.system) * recording.fps - 1e-9));
-  twin.points = recording.point_count();
-  twin.interior = recording.interior_count();
-  twin.order = recording.order;
-  twin.controller_velocity = options_.controller_velocity.value_or(false);
-  twin.fps = recording.fps;
-  twin.gravity = recording.gravity;
-  twin.seed = options_.seed;
+  Twin twin =
+      DenseTwin(recording, system, options_.controller_velocity.value_or(false), options_.seed);
+  twin.levels[0].substeps_per_second =
+      static_cast<int>(std::ceil(Substeps(system) * recording.fps - 1e-9));
   return twin;
 }
 

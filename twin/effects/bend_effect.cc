@@ -47,31 +47,18 @@ struct Bent {
 
 }  // namespace
 
-void BendEffectForce::Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd> internal,
-                          Points* force) const {
-  AddBendForces({{this, 0}}, instant, internal, force);
-}
-
-void BendEffectForce::AddAdjoint(const Instant& instant,
-                                 const Eigen::Ref<const Eigen::VectorXd>& internal,
-                                 const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
-                                 InstantGradient* gradient) const {
-  AddBendForcesAdjoint({{this, 0}}, instant, internal, force_bar, internal_bar, &gradient->x,
-                       &gradient->v, {&gradient->values});
-}
-
 void AddBendForces(const std::vector<BendLaw>& laws, const Instant& instant,
                    Eigen::Ref<Eigen::VectorXd> internal, Points* force) {
-  const std::vector<BendingTriple>& triples = laws[0].force->triples_;
+  const std::vector<BendingTriple>& triples = laws[0].moment->triples();
   for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
     const BendingTriple& triple = triples[i];
     const Bent bent(instant, triple);
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
     for (const BendLaw& law : laws) {
-      double* z = law.force->has_internal() ? internal.data() + law.internal + 3 * i : nullptr;
+      double* z = law.moment->has_internal() ? internal.data() + law.internal + 3 * i : nullptr;
       Eigen::Vector3d variables = Eigen::Vector3d::Zero();
       if (z) variables = Eigen::Map<Eigen::Vector3d>(z);
-      moment += law.force->Moment(i, bent.bend, instant.step, &variables);
+      moment += law.moment->Moment(i, bent.bend, instant.step, &variables);
       if (z) Eigen::Map<Eigen::Vector3d>{z} = variables;
     }
     const Eigen::Vector3d on_p = bent.p.Across(moment), on_q = bent.q.Across(moment);
@@ -87,7 +74,7 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
                           Points* x_bar, Points* v_bar,
                           const std::vector<Eigen::VectorXd*>& values_bar) {
   using Vector = Eigen::Vector3d;
-  const std::vector<BendingTriple>& triples = laws[0].force->triples_;
+  const std::vector<BendingTriple>& triples = laws[0].moment->triples();
   for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
     const auto [a, b, c, length] = triples[i];
     const Bent bent(instant, triples[i]);
@@ -98,7 +85,7 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
     Vector moment = Vector::Zero();
     Bend bar;
     for (std::size_t n = 0; n < laws.size(); ++n) {
-      const bool has_internal = laws[n].force->has_internal();
+      const bool has_internal = laws[n].moment->has_internal();
       const int at = laws[n].internal + 3 * i;
       Vector z = Vector::Zero(), z_bar = Vector::Zero();
       if (has_internal) {
@@ -106,9 +93,9 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
         z_bar = internal_bar.segment<3>(at);
       }
       Vector z_after = z;
-      moment += laws[n].force->Moment(i, bent.bend, instant.step, &z_after);
-      laws[n].force->MomentAdjoint(i, bent.bend, instant.step, z, moment_bar, &z_bar, &bar,
-                                   values_bar[n]);
+      moment += laws[n].moment->Moment(i, bent.bend, instant.step, &z_after);
+      laws[n].moment->MomentAdjoint(i, bent.bend, instant.step, z, moment_bar, &z_bar, &bar,
+                                    values_bar[n]);
       if (has_internal) internal_bar.segment<3>(at) = z_bar;
     }
     Vector unused = Vector::Zero(), p_bar = Vector::Zero(), q_bar = Vector::Zero();

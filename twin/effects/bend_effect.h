@@ -23,11 +23,38 @@ struct Bend {
   Eigen::Vector3d tangent = Eigen::Vector3d::Zero();  // s
 };
 
-class BendEffectForce;
+// The law of one effect of bending with given values, on one system's triples.
+class BendMoment {
+ public:
+  using Vector = Eigen::Vector3d;
+
+  BendMoment(const SpringMassSystem& system, const Eigen::VectorXd& values)
+      : values_(values), triples_(FindBendingTriples(system)) {}
+  virtual ~BendMoment() = default;
+
+  // Whether each triple has three internal variables.
+  virtual bool has_internal() const { return false; }
+  int internal_size() const { return has_internal() ? 3 * static_cast<int>(triples_.size()) : 0; }
+
+  // The moment M [N m] at a triple; advances its internal variables z.
+  virtual Vector Moment(int triple, const Bend& bend, double step, Vector* z) const = 0;
+  // Adjoint: z before the sub-step; *z_bar in d loss / d z after, out before. Adds to the rest.
+  virtual void MomentAdjoint(int triple, const Bend& bend, double step, const Vector& z,
+                             const Vector& moment_bar, Vector* z_bar, Bend* bar,
+                             Eigen::VectorXd* values_bar) const = 0;
+
+  const std::vector<BendingTriple>& triples() const { return triples_; }
+
+ protected:
+  const Eigen::VectorXd values_;
+
+ private:
+  std::vector<BendingTriple> triples_;
+};
 
 // One of several laws that act on the same triples, and where its internal variables begin.
 struct BendLaw {
-  const BendEffectForce* force;
+  const BendMoment* moment;
   int internal;
 };
 
@@ -41,46 +68,6 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
                           const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
                           Points* x_bar, Points* v_bar,
                           const std::vector<Eigen::VectorXd*>& values_bar);
-
-class BendEffectForce : public EffectForce {
- public:
-  BendEffectForce(const SpringMassSystem& system, const Eigen::VectorXd& values)
-      : values_(values), triples_(FindBendingTriples(system)) {}
-
-  int internal_size() const override {
-    return has_internal() ? 3 * static_cast<int>(triples_.size()) : 0;
-  }
-  void Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd> internal,
-           Points* force) const override;
-  void AddAdjoint(const Instant& instant, const Eigen::Ref<const Eigen::VectorXd>& internal,
-                  const Points& force_bar, Eigen::Ref<Eigen::VectorXd> internal_bar,
-                  InstantGradient* gradient) const override;
-
- protected:
-  using Vector = Eigen::Vector3d;
-
-  friend void AddBendForces(const std::vector<BendLaw>&, const Instant&,
-                            Eigen::Ref<Eigen::VectorXd>, Points*);
-  friend void AddBendForcesAdjoint(const std::vector<BendLaw>&, const Instant&,
-                                   const Eigen::Ref<const Eigen::VectorXd>&, const Points&,
-                                   Eigen::Ref<Eigen::VectorXd>, Points*, Points*,
-                                   const std::vector<Eigen::VectorXd*>&);
-
-  virtual bool has_internal() const { return false; }
-
-  // The moment M [N m] at a triple; advances its internal variables z.
-  virtual Vector Moment(int triple, const Bend& bend, double step, Vector* z) const = 0;
-  // Adjoint: z before the sub-step; *z_bar in d loss / d z after, out before. Adds to the rest.
-  virtual void MomentAdjoint(int triple, const Bend& bend, double step, const Vector& z,
-                             const Vector& moment_bar, Vector* z_bar, Bend* bar,
-                             Eigen::VectorXd* values_bar) const = 0;
-
-  const std::vector<BendingTriple>& triples() const { return triples_; }
-  const Eigen::VectorXd values_;
-
- private:
-  std::vector<BendingTriple> triples_;
-};
 
 // Springs along the triples of `bound` that are as stiff (`stiffness` B, N m^2) and as damped
 // (`damping`, N m^2 s) as moments B kappa / length.

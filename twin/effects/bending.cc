@@ -6,11 +6,10 @@
 namespace physpring {
 namespace {
 
-class BendingForce : public BendEffectForce {
+class BendingMoment : public BendMoment {
  public:
-  using BendEffectForce::BendEffectForce;
+  using BendMoment::BendMoment;
 
- protected:
   Vector Moment(int triple, const Bend& bend, double, Vector*) const override {
     return values_[0] / triples()[triple].length * bend.bend;
   }
@@ -32,9 +31,14 @@ class Bending : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Constant(1, 1e-5), Eigen::VectorXd::Constant(1, 1e-3)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<BendingForce>(system, values);
+  RodPart rod_part() const override { return RodPart::kFitted; }
+  Eigen::VectorXd StartOfRod(const RodTraits& rod) const override {
+    return Eigen::VectorXd::Constant(1, rod.flexural_rigidity);
+  }
+  double FlexuralRigidity(const Eigen::VectorXd& values) const override { return values[0]; }
+  std::unique_ptr<BendMoment> MakeBend(const SpringMassSystem& system,
+                                       const Eigen::VectorXd& values) const override {
+    return std::make_unique<BendingMoment>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     StiffenLikeBending(values[0], 0, bound);

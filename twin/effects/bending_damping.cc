@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damping of bending: the moment at a triple of nodes is D kappa_dot / length. Drag also damps the
 // motion of the whole, dashpots also that along the springs; this only changes of shape.
+#include <cmath>
+
 #include "twin/effects/bend_effect.h"
 
 namespace physpring {
 namespace {
 
-class BendingDampingForce : public BendEffectForce {
- public:
-  using BendEffectForce::BendEffectForce;
+constexpr double kCalm = 100;  // 1/s, of a rod with which a fit starts
 
- protected:
+class BendingDampingMoment : public BendMoment {
+ public:
+  using BendMoment::BendMoment;
+
   Vector Moment(int triple, const Bend& bend, double, Vector*) const override {
     return values_[0] / triples()[triple].length * bend.rate;
   }
@@ -32,9 +35,16 @@ class BendingDamping : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Constant(1, 1e-6)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<BendingDampingForce>(system, values);
+  // A little, which calms the shortest waves; more would serve fits under an observer, but not free
+  // motions. In an even chain of nodes of mass m at distances l those decay at 16 D / (m l^3).
+  RodPart rod_part() const override { return RodPart::kGiven; }
+  Eigen::VectorXd StartOfRod(const RodTraits& rod) const override {
+    const double damping = kCalm * rod.node_mass * std::pow(rod.spacing, 3) / 16;
+    return Eigen::VectorXd::Constant(1, damping);
+  }
+  std::unique_ptr<BendMoment> MakeBend(const SpringMassSystem& system,
+                                       const Eigen::VectorXd& values) const override {
+    return std::make_unique<BendingDampingMoment>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     StiffenLikeBending(0, values[0], bound);

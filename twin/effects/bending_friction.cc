@@ -7,11 +7,12 @@
 namespace physpring {
 namespace {
 
-class BendingFrictionForce : public BendEffectForce {
- public:
-  using BendEffectForce::BendEffectForce;
+constexpr double kHeld = 0.3;  // part of the elastic moment where a rod begins to slip
 
- protected:
+class BendingFrictionMoment : public BendMoment {
+ public:
+  using BendMoment::BendMoment;
+
   bool has_internal() const override { return true; }
 
   Vector Moment(int triple, const Bend& bend, double step, Vector* z) const override {
@@ -64,9 +65,14 @@ class BendingFriction : public Effect {
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::Vector2d(1e-4, 1), Eigen::Vector2d(1e-3, 4)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<BendingFrictionForce>(system, values);
+  RodPart rod_part() const override { return RodPart::kFitted; }
+  Eigen::VectorXd StartOfRod(const RodTraits& rod) const override {
+    const double moment = kHeld * rod.flexural_rigidity * rod.slip_angle / rod.length;
+    return Eigen::Vector2d(moment, rod.slip_angle / rod.length);
+  }
+  std::unique_ptr<BendMoment> MakeBend(const SpringMassSystem& system,
+                                       const Eigen::VectorXd& values) const override {
+    return std::make_unique<BendingFrictionMoment>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     if (values.isZero() || values[1] == 0) return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/effects/effect.h"
 
+#include "twin/effects/bend_effect.h"
+
 namespace physpring {
 
 void Effect::Change(const Eigen::VectorXd&, Setting*) const {}
@@ -15,9 +17,19 @@ std::unique_ptr<EffectForce> Effect::MakeForce(const SpringMassSystem&,
 
 std::unique_ptr<SpringTension> Effect::MakeTension(const Eigen::VectorXd&) const { return nullptr; }
 
-bool Effect::HasForces(const SpringMassSystem& system, const Eigen::VectorXd& values) const {
-  return MakeTension(values) != nullptr || MakeForce(system, values) != nullptr;
+std::unique_ptr<BendMoment> Effect::MakeBend(const SpringMassSystem&,
+                                             const Eigen::VectorXd&) const {
+  return nullptr;
 }
+
+bool Effect::HasForces(const SpringMassSystem& system, const Eigen::VectorXd& values) const {
+  return MakeTension(values) != nullptr || MakeForce(system, values) != nullptr ||
+         MakeBend(system, values) != nullptr;
+}
+
+Eigen::VectorXd Effect::StartOfRod(const RodTraits&) const { return {}; }
+
+double Effect::FlexuralRigidity(const Eigen::VectorXd&) const { return 0; }
 
 void Effect::Stiffen(const Eigen::VectorXd&, SpringMassSystem*) const {}
 

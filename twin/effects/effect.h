@@ -6,7 +6,8 @@
 //   delay the controllers' motion,
 //   add forces on the nodes in each sub-step, from positions, velocities, time and internal
 //   variables of its own, which start at 0 and are part of the simulator's state,
-//   add tension to the springs in each sub-step, in the same way (spring_tension.h).
+//   add tension to the springs in each sub-step, in the same way (spring_tension.h),
+//   add moments where the body bends, in the same way (bend_effect.h).
 // Each has its adjoint. Values of 0 change nothing. Forces on nodes are computed in double
 // precision also where the simulator is not. twin/effects/registry.h lists the effects.
 #ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_H_
@@ -23,6 +24,8 @@
 
 namespace physpring {
 
+class BendMoment;
+
 // A parameter of an effect: one value, or several of a kind, one after the other.
 struct EffectParameter {
   enum class Spacing { kEven, kLogarithmic };  // how a search moves it
@@ -31,6 +34,7 @@ struct EffectParameter {
   double scale;                                // a change that matters; if logarithmic a factor e
   int count = 1;
   Spacing spacing = Spacing::kEven;
+  bool is_moment = false;  // in a rod a search moves it by the moments that bend that rod
 };
 
 // What an effect may change before a simulation.
@@ -45,6 +49,17 @@ struct BodyTraits {
   bool solid;      // its springs spread in all three directions
   bool rod;        // its arc lengths are known
 };
+
+// A rod with which a fit starts.
+struct RodTraits {
+  double length, spacing;    // m, the whole and between nodes
+  double node_mass;          // kg
+  double flexural_rigidity;  // N m^2, that would matter to it under its own weight
+  double slip_angle;         // rad, by which it is bent in all where its strands begin to slip
+};
+
+// Whether every rod has an effect, and whether a fit changes its values.
+enum class RodPart { kNone, kGiven, kFitted };
 
 // The sub-step in which forces act.
 struct Instant {
@@ -104,6 +119,12 @@ class Effect {
   // Whether a body like this may lack it.
   virtual bool MayBeMissing(const BodyTraits& body) const { return !(body.solid && bends()); }
 
+  virtual RodPart rod_part() const { return RodPart::kNone; }
+  // Values with which a rod starts, if it has the effect.
+  virtual Eigen::VectorXd StartOfRod(const RodTraits& rod) const;
+  // The flexural rigidity that is added to a rod, N m^2.
+  virtual double FlexuralRigidity(const Eigen::VectorXd& values) const;
+
   // How much later than recorded the controllers move, s. If `delays`, it is the first value.
   virtual bool delays() const { return false; }
 
@@ -112,7 +133,10 @@ class Effect {
                                                  const Eigen::VectorXd& values) const;
   // Nothing if the effect does not act along the springs.
   virtual std::unique_ptr<SpringTension> MakeTension(const Eigen::VectorXd& values) const;
-  // Whether it has one of the two.
+  // Nothing if the effect does not act where the body bends.
+  virtual std::unique_ptr<BendMoment> MakeBend(const SpringMassSystem& system,
+                                               const Eigen::VectorXd& values) const;
+  // Whether it has one of the three.
   bool HasForces(const SpringMassSystem& system, const Eigen::VectorXd& values) const;
 
   // Makes the springs of `bound` so stiff, or adds springs to it, that the sub-steps that are

@@ -41,29 +41,27 @@ EffectSet::EffectSet(const SpringMassSystem& system, const Eigen::Vector3d& grav
   }
   for (std::size_t i = 0; i < effects_.size(); ++i) {
     forces_.push_back(effects_[i]->MakeForce(changed().system, system.effects[i].values));
-    if (const auto* bend = dynamic_cast<const BendEffectForce*>(forces_[i].get())) {
-      bends_.push_back({bend, offset_.back()});
-      bend_.push_back(i);
+    bends_.push_back(effects_[i]->MakeBend(changed().system, system.effects[i].values));
+    int end = offset_.back() + (forces_[i] ? forces_[i]->internal_size() : 0);
+    if (bends_[i]) {
+      bend_laws_.push_back({bends_[i].get(), end});
+      end += bends_[i]->internal_size();
     }
-    offset_.push_back(offset_.back() + (forces_[i] ? forces_[i]->internal_size() : 0));
+    offset_.push_back(end);
   }
 }
 
-bool EffectSet::IsBend(std::size_t i) const {
-  return std::find(bend_.begin(), bend_.end(), i) != bend_.end();
-}
-
 bool EffectSet::has_forces() const {
-  return std::any_of(forces_.begin(), forces_.end(),
-                     [](const auto& force) { return force != nullptr; });
+  return !bend_laws_.empty() || std::any_of(forces_.begin(), forces_.end(),
+                                            [](const auto& force) { return force != nullptr; });
 }
 
 void EffectSet::AddForces(const Instant& instant, Eigen::VectorXd* internal, Points* force) const {
   for (std::size_t i = 0; i < forces_.size(); ++i) {
-    if (!forces_[i] || IsBend(i)) continue;
-    forces_[i]->Add(instant, internal->segment(offset_[i], offset_[i + 1] - offset_[i]), force);
+    if (!forces_[i]) continue;
+    forces_[i]->Add(instant, internal->segment(offset_[i], forces_[i]->internal_size()), force);
   }
-  if (!bends_.empty()) AddBendForces(bends_, instant, *internal, force);
+  if (!bend_laws_.empty()) AddBendForces(bend_laws_, instant, *internal, force);
 }
 
 void EffectSet::AddForcesAdjoint(const Instant& instant, const Eigen::VectorXd& internal,
@@ -72,17 +70,19 @@ void EffectSet::AddForcesAdjoint(const Instant& instant, const Eigen::VectorXd& 
   InstantGradient sum{
       Points::Zero(3, instant.x.cols()), Points::Zero(3, instant.x.cols()), {}, gradient};
   for (std::size_t i = 0; i < forces_.size(); ++i) {
-    if (!forces_[i] || IsBend(i)) continue;
-    const int size = offset_[i + 1] - offset_[i];
+    if (!forces_[i]) continue;
+    const int size = forces_[i]->internal_size();
     sum.values.setZero(gradient->effects[i].size());
     forces_[i]->AddAdjoint(instant, internal.segment(offset_[i], size), force_bar,
                            internal_bar->segment(offset_[i], size), &sum);
     gradient->effects[i] += sum.values;
   }
-  if (!bends_.empty()) {
+  if (!bend_laws_.empty()) {
     std::vector<Eigen::VectorXd*> values_bar;
-    for (std::size_t i : bend_) values_bar.push_back(&gradient->effects[i]);
-    AddBendForcesAdjoint(bends_, instant, internal, force_bar, *internal_bar, &sum.x, &sum.v,
+    for (std::size_t i = 0; i < bends_.size(); ++i) {
+      if (bends_[i]) values_bar.push_back(&gradient->effects[i]);
+    }
+    AddBendForcesAdjoint(bend_laws_, instant, internal, force_bar, *internal_bar, &sum.x, &sum.v,
                          values_bar);
   }
   *x_bar += sum.x;

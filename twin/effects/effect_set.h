@@ -44,15 +44,14 @@ class EffectSet {
   void ChangeAdjoint(double delay_bar, SystemGradient* gradient) const;
 
  private:
-  bool IsBend(std::size_t i) const;
-
   std::vector<const Effect*> effects_;
   std::vector<Setting> settings_;  // before the first effect, between them, after the last
-  std::vector<std::unique_ptr<EffectForce>> forces_;  // one for each effect; null: none
-  std::vector<int>
-      offset_;  // where each effect's internal variables begin; the last one: their number
-  std::vector<BendLaw> bends_;     // those of forces_ that are of bending ...
-  std::vector<std::size_t> bend_;  // ... and which they are
+  // one for each effect; null: none
+  std::vector<std::unique_ptr<EffectForce>> forces_;
+  std::vector<std::unique_ptr<BendMoment>> bends_;
+  std::vector<BendLaw> bend_laws_;  // those of bends_ that are there
+  // where each effect's internal variables begin; the last one: their number
+  std::vector<int> offset_;
 };
 
 }  // namespace physpring

@@ -6,34 +6,13 @@
 #include <cmath>
 #include <memory>
 
+#include "twin/effects/list.h"
 #include "twin/error.h"
-
-// One line an effect: MakeNAME is in the effect's own file.
-#define PHYSPRING_EFFECTS(EFFECT) \
-  EFFECT(AirDrag)                 \
-  EFFECT(GravityDirection)        \
-  EFFECT(Stiffening)              \
-  EFFECT(TensionOnly)             \
-  EFFECT(Yield)                   \
-  EFFECT(DryFriction)             \
-  EFFECT(Viscoelastic)            \
-  EFFECT(Bending)                 \
-  EFFECT(BendingDamping)          \
-  EFFECT(RestBend)                \
-  EFFECT(BendingFriction)         \
-  EFFECT(Twist)                   \
-  EFFECT(MassDistribution)        \
-  EFFECT(Tether)                  \
-  EFFECT(RestLength)              \
-  EFFECT(ControlLatency)          \
-  EFFECT(GroundContact)           \
-  EFFECT(StiffnessDrift)          \
-  EFFECT(UniformForce)
 
 namespace physpring {
 
 #define PHYSPRING_DECLARE(NAME) std::unique_ptr<Effect> Make##NAME();
-PHYSPRING_EFFECTS(PHYSPRING_DECLARE)
+PHYSPRING_EFFECTS(PHYSPRING_DECLARE, PHYSPRING_NO_EFFECT, PHYSPRING_DECLARE)
 #undef PHYSPRING_DECLARE
 
 namespace {
@@ -41,7 +20,7 @@ namespace {
 std::vector<std::unique_ptr<Effect>> MakeAll() {
   std::vector<std::unique_ptr<Effect>> effects;
 #define PHYSPRING_MAKE(NAME) effects.push_back(Make##NAME());
-  PHYSPRING_EFFECTS(PHYSPRING_MAKE)
+  PHYSPRING_EFFECTS(PHYSPRING_MAKE, PHYSPRING_NO_EFFECT, PHYSPRING_MAKE)
 #undef PHYSPRING_MAKE
   return effects;
 }

@@ -16,10 +16,10 @@ namespace {
 constexpr int kBendKnots = 8;
 constexpr double kVertical = 1e-6;  // sine of the angle between tangent and the vertical
 
-class RestBendForce : public BendEffectForce {
+class RestBendMoment : public BendMoment {
  public:
-  RestBendForce(const SpringMassSystem& system, const Eigen::VectorXd& values)
-      : BendEffectForce(system, values) {
+  RestBendMoment(const SpringMassSystem& system, const Eigen::VectorXd& values)
+      : BendMoment(system, values) {
     const Eigen::VectorXd along = BodyCoordinate(system);
     Eigen::VectorXd at(static_cast<Eigen::Index>(triples().size()));
     for (Eigen::Index i = 0; i < at.size(); ++i) {
@@ -29,7 +29,6 @@ class RestBendForce : public BendEffectForce {
     moments_ = knots_ * values.reshaped(kBendKnots, 2);
   }
 
- protected:
   Vector Moment(int triple, const Bend& bend, double, Vector*) const override {
     const Vector across = Vector::UnitZ().cross(bend.tangent);
     if (across.norm() < kVertical) return Vector::Zero();
@@ -64,15 +63,20 @@ class RestBend : public Effect {
   std::string name() const override { return "rest_bend"; }
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
-    return {{"moment_up_n_m", -10, 10, 1e-3, kBendKnots},
-            {"moment_side_n_m", -10, 10, 1e-3, kBendKnots}};
+    using Spacing = EffectParameter::Spacing;
+    return {{"moment_up_n_m", -10, 10, 1e-3, kBendKnots, Spacing::kEven, true},
+            {"moment_side_n_m", -10, 10, 1e-3, kBendKnots, Spacing::kEven, true}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Zero(2 * kBendKnots)};
   }
-  std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
-                                         const Eigen::VectorXd& values) const override {
-    return std::make_unique<RestBendForce>(system, values);
+  RodPart rod_part() const override { return RodPart::kFitted; }
+  Eigen::VectorXd StartOfRod(const RodTraits&) const override {
+    return Eigen::VectorXd::Zero(2 * kBendKnots);
+  }
+  std::unique_ptr<BendMoment> MakeBend(const SpringMassSystem& system,
+                                       const Eigen::VectorXd& values) const override {
+    return std::make_unique<RestBendMoment>(system, values);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
     return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not bend"};

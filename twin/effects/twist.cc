@@ -140,6 +140,10 @@ class TwistEffect : public Effect {
     }
     return starts;
   }
+  RodPart rod_part() const override { return RodPart::kFitted; }
+  Eigen::VectorXd StartOfRod(const RodTraits& rod) const override {
+    return Eigen::Vector2d(rod.flexural_rigidity, 0);
+  }
   // Nothing where no rod is known.
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {

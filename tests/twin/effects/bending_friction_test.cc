@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "twin/effects/bend_effect.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {
@@ -28,9 +29,9 @@ double MomentOf(int edges, double curvature) {
   system.position = Arc(edges, 0);
   system.mass = Eigen::VectorXd::Ones(edges + 1);
   system.order = Eigen::VectorXd::LinSpaced(edges + 1, 0, kLength);
-  const auto force =
-      GetEffect("bending_friction").MakeForce(system, Eigen::Vector2d(kMoment, kSlip));
-  Eigen::VectorXd internal = Eigen::VectorXd::Zero(force->internal_size());
+  const auto moment =
+      GetEffect("bending_friction").MakeBend(system, Eigen::Vector2d(kMoment, kSlip));
+  Eigen::VectorXd internal = Eigen::VectorXd::Zero(moment->internal_size());
   constexpr int kSteps = 400;
   const double h = 1.0 / kSteps;
   Points total;
@@ -38,7 +39,8 @@ double MomentOf(int edges, double curvature) {
     const Points before = Arc(edges, curvature * i * h),
                  after = Arc(edges, curvature * (i + 1) * h);
     total = Points::Zero(3, edges + 1);
-    force->Add({i * h, h, (before + after) / 2, (after - before) / h}, internal, &total);
+    AddBendForces({{moment.get(), 0}}, {i * h, h, (before + after) / 2, (after - before) / h},
+                  internal, &total);
   }
   return total.col(0).norm() * kLength / edges;
 }
