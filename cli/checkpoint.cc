@@ -81,7 +81,7 @@ void Checkpoint::ExpectSameTraining(const Twin& twin) const {
                     path_, what, in_file, now));
   };
   const Json in_file = Json::parse(twin.options_json), now = Json::parse(labels_.options_json);
-  Json keys = in_file;  // and those that are new
+  Json keys = in_file;  // the keys of the file, and below those that are new
   keys.update(now);
   for (const auto& [key, value] : keys.items()) {
     expect_same(key, in_file.value(key, Json()).dump(), now.value(key, Json()).dump());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A twin file as the checkpoint of the training that writes it: the twin so far, with the state
-// that the training goes on from, and with what it was trained on and how.
+// A twin file is the checkpoint of the training that writes it. It holds the twin so far, the state
+// that the training goes on from, and what the twin is trained on and how.
 #ifndef PHYSPRING_CLI_CHECKPOINT_H_
 #define PHYSPRING_CLI_CHECKPOINT_H_
 
@@ -14,33 +14,32 @@
 
 namespace physpring {
 
-// Whether the training that wrote a twin came to its end; true of a twin from elsewhere.
+// Whether the training that wrote a twin came to its end. True for a twin from elsewhere.
 bool IsFinished(const Twin& twin);
 
-// Says so on stderr if it did not.
+// Warns on stderr if the training that wrote the twin did not come to its end.
 void WarnIfUnfinished(const Twin& twin, const std::string& path);
 
 class Checkpoint {
  public:
-  // Of the training on `data` with `options` that writes to `path`. `from`: the file that level 0
-  // comes from; empty: it is fitted.
+  // The checkpoint of the training on `data` with `options`, which writes to `path`. `from` is the
+  // file that level 0 comes from; if it is empty, level 0 is fitted.
   Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
              const std::string& from);
 
-  // Throws Error if there is a file that is no twin, or a twin that would be overwritten without
-  // `force`.
+  // Throws Error if the file at `path` is no twin, or if it is a twin and `force` is not set.
   void ExpectReplaceable(bool force) const;
 
-  // Gives `journal` what is in the file, and returns its twin; nothing if there is no file. Throws
-  // Error if the file is no twin, or one of other recordings, other options (naming the first that
-  // differs) or another version of the program.
+  // Gives `journal` what the file holds and returns its twin; returns nothing if there is no file.
+  // Throws Error if the file is no twin, or if its training had other recordings, other options
+  // (the message names the first that differs) or another version of the program.
   std::optional<Twin> Resume(Journal* journal) const;
 
-  // What the pieces of this training depend on, all together.
+  // The key of what all pieces of this training depend on.
   PieceKey Key() const;
 
-  // Write the file, atomically: the twin so far and what its training goes on from, or the finished
-  // twin. Both return what is in it.
+  // Both write the file, whole or not at all, and return what is in it. Write stores the twin so
+  // far and what its training goes on from, WriteFinished the finished twin.
   Twin Write(const Twin& so_far, const Journal& journal) const;
   Twin WriteFinished(const Twin& twin) const;
 

@@ -56,7 +56,7 @@ void ExpectNotFitted(const Recording& judged, const std::string& path,
 
 // A recording may declare another mass than the twin has; what it weighs shows in its motion alone.
 void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
-  constexpr double kAlike = 0.01;  // of the twin's
+  constexpr double kAlike = 0.01;  // masses are alike that differ by this part of the twin's
   const double mass = twin.levels[0].system.mass.sum();
   for (const auto* recordings : {&chosen.fit, &chosen.held_out}) {
     for (const Recording& recording : *recordings) {
@@ -69,7 +69,7 @@ void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
   }
 }
 
-// What such a twin lacks is not in the list, or it is not of this object.
+// Such a twin lacks what is not in the list of effects, or it is not of this object.
 void WarnIfUseless(const Diagnosis& diagnosis) {
   if (!(diagnosis.after.held > diagnosis.motionless)) return;
   fmt::print(stderr,
@@ -87,7 +87,7 @@ void WarnOfCoarseLevels(const Twin& twin) {
       "--effects fits a hierarchy\n");
 }
 
-// Before the work: makes the folder.
+// Makes the folder before the work, and checks that all outputs can be written.
 Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<RecordingEntry>& fit,
                     const std::vector<RecordingEntry>& held_out) {
   const std::filesystem::path folder(arguments.output);
@@ -107,7 +107,7 @@ Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<Record
   return outputs;
 }
 
-// With progress and checkpoints. A signal leaves a checkpoint and throws Interrupted.
+// Diagnoses with progress and checkpoints. A signal leaves a checkpoint and throws Interrupted.
 Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
                        const std::vector<Recording>& recordings,
                        const std::vector<Recording>& held_out, const DiagnoseArguments& arguments) {
@@ -115,7 +115,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
   const InterruptWatch watch;
   Journal journal;
   if (arguments.run.resume) checkpoint.Resume(&journal);
-  std::optional<Progress> progress;  // from the first piece of work that is not in the checkpoint
+  std::optional<Progress> progress;  // begins with the first piece that is not in the checkpoint
   double done = 0;
   journal.progress = [&](double share, const std::string& status) {
     if (watch.signal() != 0) throw Interrupted{watch.signal()};

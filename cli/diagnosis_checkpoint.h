@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// checkpoint.npz in the folder of a diagnosis: what it has worked out so far (journal.h), and of
-// what, so that a diagnosis that was stopped goes on.
+// checkpoint.npz in the folder of a diagnosis. It holds what the diagnosis has worked out so far
+// (journal.h) and what is diagnosed, so that a diagnosis that was stopped can go on.
 #ifndef PHYSPRING_CLI_DIAGNOSIS_CHECKPOINT_H_
 #define PHYSPRING_CLI_DIAGNOSIS_CHECKPOINT_H_
 
@@ -14,22 +14,23 @@ namespace physpring {
 
 class DiagnosisCheckpoint {
  public:
-  // At `path`; of the diagnosis of the twin file on recordings.
+  // The checkpoint at `path` of the diagnosis of the file `twin` on these recordings.
   DiagnosisCheckpoint(const std::string& path, const std::string& twin,
                       const std::vector<Recording>& recordings,
                       const std::vector<Recording>& held_out, const DiagnosisOptions& options);
 
   const std::string& path() const { return path_; }
 
-  // Throws Error if there is a diagnosis in the folder, finished (it has `report`) or not, that
-  // would be overwritten without `allowed`.
+  // Throws Error if the folder holds a diagnosis, finished (it has the file `report`) or not,
+  // unless it is `allowed` to replace it.
   void ExpectReplaceable(const std::string& report, bool allowed) const;
 
-  // Gives `journal` what is in the file; nothing if there is none. Throws Error if the file is no
-  // checkpoint, or one of something else (naming the first that differs).
+  // Gives `journal` what the file holds; does nothing if there is no file. Throws Error if the file
+  // is no checkpoint, or if it is one of another diagnosis (the message names the first thing that
+  // differs).
   void Resume(Journal* journal) const;
 
-  // Writes the file, atomically.
+  // Writes the file, whole or not at all.
   void Write(const Journal& journal) const;
 
   // Marks the file that was written as finished.
@@ -37,7 +38,7 @@ class DiagnosisCheckpoint {
 
  private:
   std::string path_;
-  std::string of_json_;  // what is diagnosed
+  std::string of_json_;  // what is diagnosed, and by which program
 };
 
 }  // namespace physpring

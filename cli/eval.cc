@@ -48,7 +48,8 @@ EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
   return evaluated;
 }
 
-// Before the work. Trajectories of several recordings go to a folder.
+// Checks before the work that all outputs can be written. Trajectories of several recordings go to
+// a folder.
 void ExpectWritable(const EvalArguments& arguments, const std::vector<RecordingEntry>& entries) {
   std::vector<std::string> inputs{arguments.twin};
   for (const RecordingEntry& entry : entries) inputs.push_back(entry.path);

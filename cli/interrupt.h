@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C (SIGINT) and SIGTERM as a wish to stop soon. A second one ends the program at once.
+// Ctrl-C (SIGINT) and SIGTERM are taken as a wish to stop soon. A second one ends the program at
+// once.
 #ifndef PHYSPRING_CLI_INTERRUPT_H_
 #define PHYSPRING_CLI_INTERRUPT_H_
 
@@ -13,7 +14,7 @@ struct Interrupted {
   int signal;
 };
 
-// While it lives, the first signal is only noted. One at a time.
+// While it lives, the first signal is only noted. Only one may live at a time.
 class InterruptWatch {
  public:
   InterruptWatch();

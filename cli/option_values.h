@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the values of options may be. Each is a check for CLI::Option whose message says in plain
-// words what would be right, and which adds nothing to the help (CLI11's own show their code
-// there).
+// What the values of options may be. Each function gives a check for CLI::Option. Its message says
+// in plain words what would be right. It adds nothing to the help (CLI11's own checks show their
+// code there).
 #ifndef PHYSPRING_CLI_OPTION_VALUES_H_
 #define PHYSPRING_CLI_OPTION_VALUES_H_
 
@@ -30,7 +30,7 @@ CLI::Validator NotEmpty();
 // One of a few words.
 CLI::Validator OneOf(const std::vector<std::string>& words);
 
-// Any whole number that a seed can be.
+// Adds --seed, which takes any whole number that a seed can be.
 CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& description);
 
 // A word and what it stands for.
@@ -40,7 +40,7 @@ struct Word {
   Value meaning;
 };
 
-// Of the simulation's numbers: whether they are single.
+// The words for the precision of the simulation's numbers, and whether it is single.
 inline constexpr Word<bool> kPrecisionWords[] = {{"double", false}, {"float", true}};
 
 // The word for `value`, which must be one of those listed.
@@ -50,8 +50,8 @@ std::string WordOf(const Word<Value> (&words)[kCount], const Value& value) {
   return std::find_if(std::begin(words), std::end(words), stands_for)->word;
 }
 
-// What one of a few words stands for, which the help lists: "full|two-stage". The words must
-// outlive the command.
+// Adds an option that takes one of `words` and sets `value` to what the word stands for. The help
+// lists the words: "full|two-stage". They must outlive the command.
 template <class Value, std::size_t kCount>
 CLI::Option* AddChoice(CLI::App* command, const std::string& name, Value* value,
                        const Word<Value> (&words)[kCount], const std::string& description) {
@@ -68,17 +68,17 @@ CLI::Option* AddChoice(CLI::App* command, const std::string& name, Value* value,
       ->default_str(WordOf(words, *value));
 }
 
-// --precision: of the simulation, double or float.
+// Adds --precision, the precision of the simulation: double or float.
 CLI::Option* AddPrecision(CLI::App* command, bool* single);
 
-// A whole number from 1, or auto: 0.
+// Adds an option that takes a whole number from 1, or `auto`, which sets `number` to 0.
 CLI::Option* AddNumberOrAuto(CLI::App* command, const std::string& name, int* number,
                              const std::string& description);
 
 // As many threads as the machine runs at once.
 int AllCores();
 
-// At most this many threads.
+// Adds --threads, the most threads that a command may use.
 CLI::Option* AddThreads(CLI::App* command, int* threads, const std::string& description);
 
 }  // namespace physpring

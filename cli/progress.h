@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far long work is, on stderr: a bar with the time left on a terminal, else a plain line now
-// and then.
+// Shows on stderr how far long work is: on a terminal as a bar with the time left, else as a plain
+// line now and then.
 #ifndef PHYSPRING_CLI_PROGRESS_H_
 #define PHYSPRING_CLI_PROGRESS_H_
 
@@ -24,8 +24,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Shows it if the last time was long enough ago. The time left is as the work since the start
-  // suggests.
+  // Shows how far the work is if it last did so long enough ago. The time left follows from the
+  // pace of the work since the start.
   void Show(double share, const std::string& status);
 
  private:

@@ -71,7 +71,7 @@ struct RecordArguments {
   RecordOptions options;
 };
 
-// How it is moved, and what a camera sees of it.
+// How the object is moved, and what a camera sees of it.
 void AddMeasurementOptions(CLI::App* command, RecordOptions* options) {
   command->add_option("--noise", options->noise, "standard deviation of each coordinate")
       ->check(NumberBetween(0, 1))

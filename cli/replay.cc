@@ -27,9 +27,9 @@ namespace {
 
 struct ReplayArguments {
   std::string scene, recording;
-  std::string twin;                  // file; empty: none
+  std::string twin;                  // a file; empty: none
   std::string video, json;           // files to write; empty: none
-  std::vector<std::string> cameras;  // in the video
+  std::vector<std::string> cameras;  // those that the video shows
   PictureQuality quality = PictureQuality::kFast;
 };
 
@@ -51,7 +51,8 @@ ControllerReplay Replay(const ReplayArguments& arguments, const Recording& recor
   return ReplayControllers(arguments.scene, recording, twin ? &*twin : nullptr, options);
 }
 
-// Loads the plugin, which a scene of tendons does not need. Empty, or why it could not be.
+// Loads the plugin, which a scene of tendons does not need. Returns why it could not be loaded;
+// empty if it could.
 std::string WhyNoPlugin() {
   try {
     LoadPluginLibrary();
@@ -61,7 +62,7 @@ std::string WhyNoPlugin() {
   return "";
 }
 
-// Over all frames after the first one.
+// The mean errors over all frames after the first one.
 ErrorMeans Compare(const Recording& recording, const std::vector<Points>& particles) {
   return MeansOverFrames(ComputeParticleErrors(recording, particles), 1, recording.frame_count());
 }
@@ -79,7 +80,7 @@ nlohmann::ordered_json ErrorsAsJson(const ErrorMeans& errors) {
   return json;
 }
 
-// The replay beside a body that does not move.
+// The errors of the replay, and those of a body that does not move.
 struct ReplayErrors {
   ErrorMeans replayed, motionless;
 };

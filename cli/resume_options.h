@@ -13,7 +13,7 @@ struct ResumeOptions {
   double checkpoint_interval = 10;  // s
 };
 
-// `resume`, `force`: what these flags do, for the help.
+// `resume` and `force` are what the help says of these flags.
 void AddResumeOptions(CLI::App* command, ResumeOptions* options, const std::string& resume,
                       const std::string& force);
 

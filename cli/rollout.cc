@@ -38,19 +38,19 @@ struct RolloutArguments {
   std::string task, json, save_scene, shard;
   std::string video;
   PictureQuality quality = PictureQuality::kFast;
-  std::vector<std::string> cameras;  // in videos
-  int films = 1;                     // episodes, from the first one
+  std::vector<std::string> cameras;  // those that videos show
+  int films = 1;                     // so many episodes are filmed, from the first one on
   SweepOptions sweep;
 };
 
-// A task by its folder, or by a file in it.
+// The folder of a task that is named by its folder, or by a file in it.
 std::string FolderOf(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) return path;
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
 }
 
-// "3/8" as shard and shards.
+// Takes "3/8" as shard and shards.
 CLI::Validator IsShard(SweepOptions* sweep) {
   return CLI::Validator(
       [sweep](std::string& text) {
@@ -79,7 +79,7 @@ CLI::Validator TakesPolicy() {
       "");
 }
 
-// Tables on standard output, and the report.
+// Prints the tables and writes the report.
 void Report(const std::vector<JudgedPolicy>& policies, const std::string& json) {
   fmt::print("{}", FormatTables(policies));
   if (!json.empty()) WriteFileAtomically(json, FormatJson(policies));
@@ -97,7 +97,7 @@ std::string VideoPath(const RolloutArguments& arguments, int level, int episode)
       .string();
 }
 
-// Cameras where the policy looks or a video is wanted.
+// Adds cameras where the policy looks or a video is wanted.
 void AddCameras(const RolloutArguments& arguments, const Task& task, SweepHooks* hooks) {
   hooks->prepare = [quality = arguments.quality, &task](mjModel* model) {
     PreparePictures(quality, task.width, task.height, model);
@@ -119,7 +119,7 @@ void ExpectDifferent(const std::vector<int>& levels) {
   }
 }
 
-// Why episodes ended early, each reason once.
+// Says why episodes ended early, each reason once.
 void WarnOfProblems(const std::vector<EpisodeSummary>& episodes) {
   std::map<std::string, int> problems;
   for (const EpisodeSummary& episode : episodes) {

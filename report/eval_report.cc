@@ -54,7 +54,7 @@ std::string FormatRow(const Row& row, const Columns& columns) {
   return line + "\n";
 }
 
-// Two lines: the parts, and what is under each.
+// Two lines: the first names the parts, the second the columns of each part.
 std::string FormatHead(const Columns& columns) {
   const int width = columns.lifted ? 35 : 17;
   std::string parts = fmt::format("{:<45}", "errors in mm");

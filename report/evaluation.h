@@ -17,7 +17,7 @@ namespace physpring {
 
 struct EvaluatedRecording {
   std::string path;
-  bool published_l1 = false;  // whether that measure is meant for it
+  bool published_l1 = false;  // whether the published measure is meant for it
   Recording recording;
   RecordingResult result;
 };
@@ -29,8 +29,8 @@ struct Evaluation {
   std::vector<EvaluatedRecording> recordings;
 };
 
-// Errors over a range of frames, of one recording or of several (then means over the recordings
-// that have data, and sums of frames).
+// Errors over a range of frames of one recording, or of several. For several, they are means over
+// the recordings that have data, and numbers of frames are summed.
 struct RowErrors {
   MeanError cd, cd_euclidean, track;
   MeanError cd_lifted, cd_euclidean_lifted, track_lifted;
@@ -41,16 +41,16 @@ struct Row {
   int level = -1;    // -1: motionless, then the numbers up to `frames_per_second` are 0
   int nodes = 0;
   int springs = 0;
-  int substeps = 0;  // a frame; of several recordings the most
+  int substeps = 0;  // sub-steps a frame; for several recordings the most
   double frames_per_second = 0;
-  std::optional<RowErrors> fit;  // none: not trained on
+  std::optional<RowErrors> fit;  // none if the twin was not trained on the recording
   RowErrors prediction;
   std::optional<double> published_l1;  // m
 };
 
 std::vector<Row> RowsOf(const EvaluatedRecording& evaluated);
 
-// Each row of the whole evaluation; every recording counts once.
+// The rows of the whole evaluation: means in which every recording counts once.
 std::vector<Row> MeanRows(const Evaluation& evaluation);
 
 }  // namespace physpring

@@ -12,10 +12,10 @@ using Json = nlohmann::ordered_json;
 
 // What can be told from the positions alone.
 struct Measured {
-  double missing_fraction = 0;      // of all points in all frames
-  int frames_without_data = 0;      // in which no point is seen
-  double largest_displacement = 0;  // m, of a point from where it started
-  Eigen::Vector3d extent{0, 0, 0};  // m, of points and interior in frame 0
+  double missing_fraction = 0;      // the part of all points in all frames that is not seen
+  int frames_without_data = 0;      // how many frames see no point
+  double largest_displacement = 0;  // m, the farthest that a point is from its start
+  Eigen::Vector3d extent{0, 0, 0};  // m, the size of points and interior in frame 0
 };
 
 Measured Measure(const Recording& recording) {

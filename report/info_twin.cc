@@ -44,7 +44,7 @@ std::string WordsOf(std::string name) {
   return name;
 }
 
-// Frames [0, train_frames) of each recording.
+// What the twin was trained on: frames [0, train_frames) of each recording.
 std::string DescribeTraining(const Twin& twin) {
   if (twin.trained_on.empty()) return "nothing";
   constexpr std::size_t kShown = 4;

@@ -25,7 +25,8 @@ struct Comparison {
   PairedVerdicts verdicts;
 };
 
-// A policy against the first one, at one level: on the same starts if their seeds are the same.
+// How a policy compares with the first one at one level: on the same starts if their seeds are the
+// same.
 struct PolicyComparison {
   std::size_t policy = 0;
   int level = 0;
@@ -36,7 +37,7 @@ using Verdicts = std::map<int, std::map<int, bool>>;  // by level, then episode
 
 struct PolicyResult {
   std::map<int, LevelOutcome> levels;
-  std::vector<Comparison> comparisons;  // with the lowest level
+  std::vector<Comparison> comparisons;  // how the other levels agree with the lowest one
 };
 
 PairedVerdicts Pair(const std::map<int, bool>& first, const std::map<int, bool>& second) {

@@ -16,8 +16,8 @@ struct JudgedPolicy {
   std::vector<EpisodeSummary> episodes;
 };
 
-// For each policy a row a level, then how the other levels agree with the lowest; with two policies
-// or more also how the levels rank them.
+// The tables have a row for each level of each policy. Below, they say how the other levels agree
+// with the lowest and, with two policies or more, how the levels rank them.
 std::string FormatTables(const std::vector<JudgedPolicy>& policies);
 std::string FormatJson(const std::vector<JudgedPolicy>& policies);
 

@@ -15,7 +15,7 @@ namespace physpring {
 namespace {
 
 constexpr double kWidth = 1040, kHeight = 250;                        // px
-constexpr double kLeft = 46, kRight = 944, kTop = 18, kBottom = 216;  // of the axes
+constexpr double kLeft = 46, kRight = 944, kTop = 18, kBottom = 216;  // the axes' ends, px
 
 struct Curve {
   std::string label, css_class;
@@ -43,8 +43,8 @@ struct Axes {
   }
 };
 
-// From a little below the least error that is usual to the greatest; errors near zero, as in the
-// first frames of a perfect start, run along the bottom.
+// The axes go from a little below the least error that is usual to the greatest. Errors near zero,
+// as in the first frames of a perfect start, run along the bottom.
 Axes FitAxes(const std::vector<Curve>& curves, double duration) {
   std::vector<double> values;
   for (const Curve& curve : curves) {

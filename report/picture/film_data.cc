@@ -30,7 +30,7 @@ std::string Base64(const std::vector<std::uint16_t>& values) {
   return text;
 }
 
-// Upright coordinates in steps from a corner; what is far outside is brought to the edge.
+// Turns upright coordinates into steps from a corner. What is far outside is brought to the edge.
 class Quantiser {
  public:
   explicit Quantiser(const View& view) : view_(view) {

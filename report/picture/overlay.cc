@@ -21,7 +21,7 @@ struct Panel {
   double scale;         // px / m
   double width, height;
 
-  // What is far off the panel is brought nearer: it is not seen either way.
+  // A point far off the panel is brought nearer: it is not seen either way.
   Eigen::Vector2d Pixel(const Eigen::Vector2d& p) const {
     const Eigen::Vector2d pixel(kPadding + (p.x() - low.x()) * scale,
                                 height - kPadding - (p.y() - low.y()) * scale);

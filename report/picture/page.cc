@@ -84,7 +84,7 @@ std::string FormatTable(const std::vector<Row>& rows) {
   return html + "</tbody></table>\n";
 }
 
-// " on a, b and c", or on how many.
+// "on a, b and c", or on how many recordings.
 std::string FormatSubject(const Evaluation& evaluation) {
   std::vector<std::string> names;
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of an evaluation: one HTML page that needs nothing else. A film to turn and to scrub
-// through, the tables, and for each recording frames of prediction over measurement and the error
-// over time.
+// The picture of an evaluation: one HTML page that needs nothing else. It has a film to turn and to
+// scrub through, the tables, and for each recording frames of prediction over measurement and the
+// error over time.
 #ifndef PHYSPRING_REPORT_PICTURE_PAGE_H_
 #define PHYSPRING_REPORT_PICTURE_PAGE_H_
 
@@ -11,7 +11,7 @@
 
 namespace physpring {
 
-// Of more than 20 recordings the first 20 are drawn; the tables count them all.
+// The page draws the first 20 recordings; its tables count them all.
 std::string FormatPage(const Evaluation& evaluation);
 
 }  // namespace physpring

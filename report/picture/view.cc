@@ -29,7 +29,7 @@ Eigen::Matrix3d Covariance(const Points& points) {
   return centred * centred.transpose() / static_cast<double>(points.cols());
 }
 
-// Rows: right, away, up.
+// The rows are the directions right, away and up.
 Eigen::Matrix3d UprightAxes(const Eigen::Vector3d& gravity, const Eigen::Matrix3d& covariance) {
   const Eigen::Vector3d up =
       gravity.isZero() ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(-gravity.normalized());
@@ -47,7 +47,7 @@ Eigen::Matrix3d UprightAxes(const Eigen::Vector3d& gravity, const Eigen::Matrix3
   return axes;
 }
 
-// Low, unless a view from higher up shows twice the area.
+// The camera stays low unless a view from higher up shows twice the area.
 double ChooseElevation(const Eigen::Matrix3d& upright_covariance) {
   double best = 0, best_area = 0;
   for (double elevation : {0.25, 0.65, 1.1}) {

@@ -2,7 +2,7 @@
 // From where a recording is looked at: an orthographic camera that shows most of the motion.
 //
 // The upright frame of a view has x to the right, y away from the viewer and z up (against
-// gravity), its origin in the middle of what was measured. The horizontal direction in which the
+// gravity). Its origin is in the middle of what was measured. The horizontal direction in which the
 // points spread most lies across the picture; the camera looks down by the elevation.
 #ifndef PHYSPRING_REPORT_PICTURE_VIEW_H_
 #define PHYSPRING_REPORT_PICTURE_VIEW_H_
@@ -15,19 +15,20 @@ class View {
  public:
   explicit View(const Recording& recording);
 
-  // 3 x points, m: in the upright frame.
+  // The points in the upright frame: 3 x points, m.
   Points ToUpright(const Points& points) const;
 
-  // Upright points in the picture: 2 x points, m, to the right and up.
+  // Where upright points lie in the picture: 2 x points, m, to the right and up.
   Eigen::Matrix2Xd Project(const Points& upright) const;
 
-  // Of the measured points and the controllers in all frames, upright, m.
+  // The least and the greatest coordinates of the measured points and the controllers in all
+  // frames, upright, m.
   const Eigen::Vector3d& low() const { return low_; }
   const Eigen::Vector3d& high() const { return high_; }
   double elevation() const { return elevation_; }  // rad
 
  private:
-  Eigen::Matrix3d axes_;  // rows: the upright axes
+  Eigen::Matrix3d axes_;  // its rows are the upright axes
   Eigen::Vector3d centre_;
   Eigen::Vector3d low_, high_;
   double elevation_;

@@ -11,8 +11,8 @@
 namespace physpring {
 namespace {
 
-constexpr int kFewestNeighbours = 6;  // of a particle or controller that has few within reach
-constexpr int kMostPerWanted = 4;     // neighbours, at most this many times those of inner ones
+constexpr int kFewestNeighbours = 6;  // so many are joined, however far, where few are within reach
+constexpr int kMostPerWanted = 4;  // no particle has more than so many times the wanted neighbours
 
 }  // namespace
 

@@ -24,38 +24,38 @@ class BodyKind {
  public:
   virtual ~BodyKind() = default;
 
-  // What a label says of it after the neighbours.
+  // What Body::Label says of the kind after the number of neighbours.
   virtual std::string Addition() const = 0;
   // Whether each spring has values of its own; else the fit ends with free motions.
   virtual bool has_single_springs() const = 0;
-  // Changes in the options of the parameters of a system of this kind.
+  // Sets in the parameters' options what is free in a system `base` of this kind.
   virtual void Free(const SpringMassSystem& base, ParameterOptions* options) const = 0;
-  // The entries of common factors, first among those of effects, that a search of start values
-  // tries several values of; -1: none.
+  // The entry of the common factors, among those of effects, that a search of start values tries
+  // several values of; -1: none.
   virtual int SearchedEffect(const Parameters& factors) const = 0;
-  // How common factors are fitted.
+  // The options with which common factors are fitted.
   virtual LevenbergMarquardtOptions FactorOptions(const Recording& recording) const = 0;
-  // By what the error of such a body is multiplied in a choice: one of few values wins ties.
+  // What a choice multiplies the error of such a body by. It lets a body of few values win ties.
   virtual double handicap() const = 0;
 };
 
 struct Body {
   const BodyKind* kind;
-  int neighbours = 0;  // of an inner particle, about
-  double radius = 0;   // m, that gives them (not used along rods)
+  int neighbours = 0;  // about so many springs join an inner particle to others
+  double radius = 0;   // m, the search radius that gives so many (not used along rods)
   bool controller_velocity = true;
   FrictionCone cone = FrictionCone::kElliptic;
-  std::vector<EffectValues> effects = {};  // those that are known, then the kind's own
-  Eigen::VectorXd mass = {};               // kg, of each particle; empty: all alike
+  std::vector<EffectValues> effects = {};  // the known ones, then the kind's own
+  Eigen::VectorXd mass = {};               // each particle's mass, kg; empty: all alike
 
   std::string Label() const;
 };
 
-// Start systems that a fit tries, in sub-steps a frame.
+// The softest and the stiffest start system that a fit tries, in sub-steps a frame.
 constexpr double kSoftestStart = 2, kStiffestStart = 64;
 
-// Over-damped, and as soft as `start_substeps` sub-steps a frame allow. Throws Error where the
-// recording gives no body.
+// The system that a fit of `body` starts from. It is over-damped, and as soft as `start_substeps`
+// sub-steps a frame allow. Throws Error where the recording gives no body.
 SpringMassSystem StartSystem(const Recording& recording, const Body& body, double start_substeps);
 
 }  // namespace physpring

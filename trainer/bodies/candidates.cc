@@ -40,7 +40,7 @@ std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions
   for (int count : NeighbourCounts(recording, options)) {
     const bool rod = recording.order.size() > 0 || particles.cols() < 2;
     const double radius = rod ? 0 : SpringRadius(particles, count);
-    if (!rod && radius < 1.02 * last_radius) continue;  // the same shells again
+    if (!rod && radius < 1.02 * last_radius) continue;  // it reaches the same shells again
     last_radius = radius;
     for (FrictionCone cone : cones) {
       for (bool velocity : velocities) {

@@ -9,8 +9,8 @@
 
 namespace physpring {
 
-// The bodies that the options leave open, in all combinations, few neighbours first; of a rod whose
-// neighbours are not given, a chain that bends comes last. Never empty.
+// The bodies that the options leave open, in all combinations, few neighbours first. For a rod
+// whose neighbours are not given, a chain that bends comes last. The list is never empty.
 std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions& options);
 
 }  // namespace physpring

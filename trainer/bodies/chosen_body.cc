@@ -9,7 +9,7 @@
 namespace physpring {
 namespace {
 
-constexpr double kRobust = 2;  // medians of the residuals, up to which their squares count
+constexpr double kRobust = 2;  // residuals up to so many medians count by their squares
 
 double MedianSize(const Eigen::VectorXd& r) {
   std::vector<double> size(static_cast<std::size_t>(r.size()));

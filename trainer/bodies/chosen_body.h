@@ -14,7 +14,7 @@ namespace physpring {
 struct ChosenBody {
   Body body;
   double start_substeps = 0;
-  Eigen::VectorXd start, factors;  // at first and as fitted
+  Eigen::VectorXd start, factors;  // the common factors at first and as fitted
 
   Parameters ParametersOf(const Recording& recording) const;
   SpringMassSystem System(const Recording& recording) const;

@@ -17,19 +17,22 @@ namespace physpring {
 Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording,
                          const BodyKind& kind = SpringNet());
 
-// The same factors and every spring's own stiffness, dashpot and rest length, and their prior.
+// SpringFactors adds every spring's own stiffness, dashpot and rest length to these factors.
+// SpringPrior gives the prior of them all.
 Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording,
                          const BodyKind& kind = SpringNet());
 GaussNewtonOptions SpringPrior(const Parameters& parameters);
-constexpr int kMostSpringRecordings = 12;  // that single springs are fitted to
+constexpr int kMostSpringRecordings = 12;  // single springs are fitted to no more than these
 
-// Steps of differences in the log-factors: of one common factor, and the longest entry of a step
-// along all parameters. Contacts make residuals jump, and floats are coarse: both want longer ones.
+// How long the steps of differences in the log-factors are: FactorDifference for one common factor,
+// DirectionDifference for the longest entry of a step along all parameters. Contacts make residuals
+// jump, and floats are coarse: both want longer steps.
 double FactorDifference(const Recording& recording);
 double DirectionDifference(const Recording& recording, bool single_precision);
 
-// No stiffness is taken that would need more than 10,000 sub-steps a second (half of PhysTwin's);
-// for common factors half of that, so that single springs find room.
+// How a fit of `body` follows recordings. No stiffness is taken that would need more than 10,000
+// sub-steps a second (half of PhysTwin's). StepFactors (chosen_body.h) halves that for common
+// factors, so that single springs find room.
 MotionProblem::Options FollowOptions(const Recording& recording, const Body& body,
                                      const TrainOptions& options);
 

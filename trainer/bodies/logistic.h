@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A coefficient between 0 and `top` as a logistic function of one that may be any number.
+// A coefficient between 0 and `top` as a logistic function of any number.
 #ifndef PHYSPRING_TRAINER_BODIES_LOGISTIC_H_
 #define PHYSPRING_TRAINER_BODIES_LOGISTIC_H_
 
@@ -10,7 +10,7 @@ namespace physpring {
 
 inline double Sigmoid(double x, double top) { return top / (1 + std::exp(-x)); }
 
-// Its inverse, kept off the ends.
+// The inverse of Sigmoid. The value is kept off the ends 0 and `top`.
 inline double Logit(double value, double top) {
   const double p = std::clamp(value / top, 1e-3, 1 - 1e-3);
   return std::log(p / (1 - p));

@@ -9,13 +9,14 @@
 namespace physpring {
 namespace {
 
-constexpr int kNeighbourhood = 18;   // neighbours of a particle; on a grid those up to a diagonal
-constexpr int kSamples = 4000;       // of a box around a particle
-constexpr double kBox = 0.75;        // its half width, of the neighbourhood's radius
-constexpr double kLeastShare = 0.2;  // of the mean mass
-constexpr double kWithin = 1.25;     // spacings: of a controller that is a part of the body
-constexpr int kSteps = 60;           // of the search for a separating plane
-constexpr double kTouching = 1e-3;   // of the neighbourhood's radius
+constexpr int kNeighbourhood = 18;  // neighbours of a particle; on a grid those up to a diagonal
+constexpr int kSamples = 4000;      // places that are tried in a box around a particle
+constexpr double kBox = 0.75;       // the box's half width, as a part of the neighbourhood's radius
+constexpr double kLeastShare = 0.2;  // the least mass of a particle, as a part of the mean mass
+constexpr double kWithin = 1.25;  // a controller nearer than so many spacings is part of the body
+constexpr int kSteps = 60;        // most steps of the search for a separating plane
+// The distance that counts as touching, as a part of the neighbourhood's radius.
+constexpr double kTouching = 1e-3;
 
 // Whether `place` lies in the convex hull of `points`: Gilbert's algorithm walks from a point of
 // the hull towards the one nearest to `place`, until a plane through it separates the two.
@@ -39,7 +40,7 @@ Eigen::Vector3d EvenPlace(int i) {
   return 2 * (place.array() - place.array().floor()) - 1;
 }
 
-// Volume of the first of `points`' cell among them and in their hull.
+// Volume of the cell of the first of `points` among them and in their hull.
 double CellVolume(const Points& points) {
   const Points offsets = points.rightCols(points.cols() - 1).colwise() - points.col(0);
   const double radius = offsets.colwise().norm().maxCoeff();
@@ -60,7 +61,7 @@ struct Held {
   int controller, particle;
 };
 
-// Controllers that are no farther from a particle than particles mostly are from each other; others
+// Controllers that are no farther from a particle than particles mostly are from each other. Others
 // are a hand that touches the body from outside.
 std::vector<Held> HeldParts(const Recording& recording) {
   const Points particles = recording.rest.leftCols(recording.particle_count());

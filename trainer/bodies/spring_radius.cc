@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFewer = 0.8, kMore = 1.25;  // neighbours that will do, relative to those wanted
 constexpr double kInner = 0.25;               // this part of the particles, the densest, are inner
-constexpr double kBlur = 0.03;                // of a distance: noise of the positions, at least
+constexpr double kBlur = 0.03;  // noise makes a distance uncertain by at least this part of it
 constexpr int kTrials = 60;
 
 // The distance within which inner particles have `neighbours` others.

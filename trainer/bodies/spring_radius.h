@@ -11,7 +11,8 @@
 namespace physpring {
 
 // Radius, m, within which an inner one of `particles` (3 x M, M >= 2, m) has between 4/5 and 5/4 of
-// `neighbours` (>= 1) others, where the fewest pairs of particles are about that far apart.
+// `neighbours` (>= 1) others. It is chosen so that the fewest pairs of particles are about that far
+// apart.
 double SpringRadius(const Points& particles, int neighbours);
 
 }  // namespace physpring

@@ -13,11 +13,11 @@ namespace physpring {
 // Whether a frame is fitted, or held back to judge by, or neither.
 enum class FrameUse { kNone, kFit, kHeld };
 
-// The motion of a recording from its start up to frame `frames` - 1. Without a list of uses all
-// frames but the first one, the start, are fitted. An observer sees what is in use.
+// The motion of a recording from its start up to frame `frames` - 1. Without a list of uses, all
+// frames but the first one, the start, are fitted. An observer sees the frames that are in use.
 struct Episode {
   const Recording* recording;
-  int frames;  // >= 2; fewer: there is nothing to predict
+  int frames;  // >= 2; with fewer there is nothing to predict
   const std::vector<FrameUse>* use = nullptr;
 
   FrameUse UseOf(int frame) const {
@@ -31,19 +31,19 @@ struct SplitRecording {
   const Recording* recording;
   std::vector<Use> use;
 
-  int last(Use wanted) const;  // frame of that use + 1; 0 if there is none
-  int seen(Use wanted) const;  // frames of that use in which a point is seen
+  int last(Use wanted) const;  // the last frame of that use + 1; 0 if there is none
+  int seen(Use wanted) const;  // how many frames of that use see a point
 
-  // Of all frames, or the first ones; *this must outlive it.
+  // The episode of all frames, or of the first ones. *this must outlive it.
   Episode All() const { return First(static_cast<int>(use.size())); }
   Episode First(int frames) const { return {recording, frames, &use}; }
 };
 
-// All frames for one use.
+// The recording with all frames but the start for one use.
 SplitRecording UseAll(const Recording& recording, FrameUse use);
 
-// A copy of the recording in which, after frame 0, only those of the episode's frames are seen that
-// are fitted: for what takes no episode.
+// A copy of the recording for functions that take no episode: after frame 0, those of the episode's
+// frames that are not fitted are not seen in it.
 Recording OnlyFitFrames(const Episode& episode);
 
 // Calls visit(frame, point) for everything seen in frames of that use, in a fixed order.

@@ -11,17 +11,18 @@
 
 namespace physpring {
 
-// Recordings of one object to fit; all with the same numbers of points, interior and controllers.
+// Recordings of one object to fit. All have the same numbers of points, interior particles and
+// controllers.
 struct FitData {
   std::vector<Recording> recordings;
-  std::vector<int>
-      continuous_recording;  // of each: recordings cut from the same run share a number
+  // For each recording, the number of its run: recordings cut from the same run share one.
+  std::vector<int> continuous_recording;
 };
 
-// Reads the recordings that are listed (dataset.h). Those of which nothing is said count as
-// continuous recordings of their own. Throws Error if one cannot be read or sees nothing after
-// frame 0 of what is for fitting, or naming both files if two differ in points, interior particles,
-// controllers or frame rate.
+// Reads the recordings that are listed (dataset.h). One that names no continuous recording counts
+// as one of its own. Throws Error if one cannot be read, or if it sees nothing after frame 0 in the
+// frames for fitting. Throws Error that names both files if two differ in points, interior
+// particles, controllers or frame rate.
 FitData ReadFitData(const std::vector<RecordingEntry>& entries);
 
 // The dense twin of a recording's object, but for its number of sub-steps a second.

@@ -7,7 +7,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kParts = 8;          // of a recording's fit frames ...
+constexpr int kParts = 8;          // a recording's fit frames are cut into so many parts ...
 constexpr int kOneHeldBackOf = 4;  // ... of which one in so many is held back
 
 // Whether frame 1 ... `last` is held back.
@@ -27,7 +27,7 @@ SplitRecording SplitFitFrames(const Recording& recording, FrameUse held_back, Fr
   return split;
 }
 
-// One in which all fit frames have that use.
+// The recording with that use for all its fit frames.
 SplitRecording UseFitFrames(const Recording& recording, FrameUse use) {
   return SplitFitFrames(recording, use, use);
 }

@@ -13,23 +13,24 @@ namespace physpring {
 
 struct HeldBack {
   std::vector<SplitRecording> fit;     // the frames to fit; the others have no use
-  std::vector<SplitRecording> judged;  // what is held back, and the frames to fit between
+  std::vector<SplitRecording> judged;  // the frames that are held back, and those to fit between
 
-  // All fit frames of the recordings; *this must outlive them. Judged are those that are held back.
+  // Episodes of all fit frames of the recordings in `fit`, and in `judged`, where those that are
+  // held back count. *this must outlive them.
   std::vector<Episode> FitEpisodes() const;
   std::vector<Episode> JudgedEpisodes() const;
 };
 
 // With four or more continuous runs, whole runs are held back (a quarter of them, spread evenly);
-// otherwise the fourth and the last eighth of each recording's fit frames. At most `most`
-// recordings on each side, spread evenly. `data` must outlive the result.
+// otherwise the fourth and the last eighth of each recording's fit frames. HoldBack takes at most
+// `most` recordings on each side, spread evenly. `data` must outlive the result.
 HeldBack HoldBack(const FitData& data, int most);
 
-// Of each recording, whether it is of a run that is held back whole: a quarter of the runs, spread
-// evenly, and none of fewer than four.
+// Whether each recording belongs to a run that is held back whole. A quarter of the runs are held
+// back, spread evenly; none if there are fewer than four.
 std::vector<bool> HeldBackRuns(const FitData& data);
 
-// At most `most` of them, spread evenly.
+// At most `most` of `all`, spread evenly.
 template <class T>
 std::vector<T> SpreadEvenly(const std::vector<T>& all, int most) {
   const int count = static_cast<int>(all.size());

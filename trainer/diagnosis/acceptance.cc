@@ -6,11 +6,12 @@
 namespace physpring {
 namespace {
 
-constexpr double kExplainedByEffects = 2;  // times the noise floor: no more effects than found
-constexpr Eigen::Index kFreeForm = 20;     // parameters, at most, of what is none
+// An error below this, times the noise floor, asks for no more effects than were found.
+constexpr double kExplainedByEffects = 2;
+constexpr Eigen::Index kFreeForm = 20;  // what has more parameters is a free form
 constexpr double kStrong = 0.7, kHopeless = 4;
-constexpr double kLeastScore = 0.05;  // of a trace, as a part of the best one
-constexpr double kNear = 1.25;        // times the error of the fit that was chosen
+constexpr double kLeastScore = 0.05;  // the least score of a trace, as a part of the best one
+constexpr double kNear = 1.25;  // the largest error that is near, times that of the chosen fit
 // Part of the error above the noise that an effect must explain with common factors alone, where
 // single springs could do without it.
 constexpr double kSimplyExplained = 0.8;

@@ -16,7 +16,8 @@ namespace physpring {
 // Errors below this, times the noise floor, say that nothing is missing.
 inline constexpr double kExplained = 1.25;
 
-// Whether the error is no more than noise; above it single springs do not bend to the noise.
+// Whether the error is no more than noise. Where it is more, single springs do not bend to the
+// noise.
 bool IsExplained(double error, double noise_floor);
 
 // Whether there is nothing to look for: by the error without a new effect, or, once `accepted`
@@ -30,15 +31,16 @@ bool IsFreeForm(Eigen::Index parameters);
 // is right.
 bool CanBeJudged(Eigen::Index parameters, bool judged_in_between);
 
-// Many parameters must be better than few by more than a standard error.
+// Whether a gain is more than its standard error: many parameters must be better than few by that
+// much.
 bool IsSurelyBetter(const BootstrapResult& gain);
-// `worse`: the errors minus those of the best. Whether they are as good as these.
+// Whether a fit is as good as the best one. `worse` is made of its errors minus those of the best.
 bool IsAlike(const BootstrapResult& worse);
 
 // Whether a fit with another law of the springs leaves so much less of the squared misfit than the
 // body alone that all bodies are tried with it.
 bool IsStrongLaw(double misfit, double misfit_alone);
-// Whether a fit under an observer does not go on, beside the one with the least misfit.
+// Whether a fit under an observer is too bad to go on beside the one with the least misfit.
 bool IsHopeless(double misfit, double least_misfit);
 // Whether a trace's score is worth a refit, beside the best one.
 bool IsWorthRefit(double score, double best_score);
@@ -47,9 +49,9 @@ bool IsWorthRefit(double score, double best_score);
 struct Threshold {
   double noise_floor;  // m
   double false_alarm;  // rate at which a model that lacks nothing gets an effect
-  double least_gain;   // part of the error above the noise floor
-  double least_noise;  // part of the noise floor
-  int tried;           // refits among which it was chosen
+  double least_gain;   // what it must gain, as a part of the error above the noise floor
+  double least_noise;  // what it must gain, as a part of the noise floor
+  int tried;           // how many refits it was chosen among
 };
 
 // Whether the gain over a fit with the error `without` is no chance, and large enough.
@@ -79,8 +81,8 @@ struct Scored {
   std::vector<double> held;
 };
 
-// Which of `fits` to take: of those as good as the one with the least error, the one with the
-// fewest parameters. `block`: frames that are drawn together. `fits` is not empty.
+// Which of `fits` to take: the one with the fewest parameters among those as good as the one with
+// the least error. `block`: frames that are drawn together. `fits` is not empty.
 std::size_t ChooseSimplest(const std::vector<Scored>& fits, int block, std::uint64_t seed);
 
 }  // namespace physpring

@@ -9,7 +9,7 @@
 namespace physpring {
 namespace {
 
-constexpr std::size_t kFewestBlocks = 4;  // of one or two all draws are much alike
+constexpr std::size_t kFewestBlocks = 4;  // all draws of one or two are much alike
 
 }  // namespace
 

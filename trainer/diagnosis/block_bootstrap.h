@@ -10,18 +10,18 @@
 namespace physpring {
 
 struct BootstrapResult {
-  double mean = 0;  // of the differences
-  double low = 0;   // bounds of a 95 % interval of it
+  double mean = 0;  // the mean of the differences
+  double low = 0;   // bounds of its 95 % interval
   double high = 0;
   double error = 0;  // standard error of the mean
   double p = 1;      // share of draws with a mean of 0 or less
 };
 
-// Frame by frame, p - q; both of the same frames.
+// p - q, frame by frame. Both are of the same frames.
 std::vector<double> Difference(const std::vector<double>& p, const std::vector<double>& q);
 
-// `difference`: error of the first model minus that of the second, of each frame. `block`: frames,
-// at most a quarter of all.
+// `difference` is the error of the first model minus that of the second in each frame. `block` is
+// the number of frames drawn together, at most a quarter of all.
 BootstrapResult BlockBootstrap(const std::vector<double>& difference, int block, int draws,
                                std::uint64_t seed);
 

@@ -21,9 +21,11 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-constexpr double kUnexplained = 2.5;                 // times the noise floor: something is left
+// An error above this, times the noise floor, leaves something to explain.
+constexpr double kUnexplained = 2.5;
 constexpr int kFewestFitted = 8, kFewestJudged = 5;  // frames in which points are seen
-// Of the work, as the journal tells it: the loop over effects, the residual forces, the last fit.
+// Shares of the work, as the journal tells it: the loop over effects, the residual forces, the last
+// fit.
 constexpr WorkShare kLoopShare{0, 0.94}, kResidualShare{0.94, 0.96}, kLastShare{0.96, 1};
 
 // What the twin says of its training on the recording; end() if it was not trained on it.
@@ -58,7 +60,7 @@ void ExpectSplit(const std::vector<SplitRecording>& splits) {
   for (const Wanted& wanted :
        {Wanted{Use::kFit, kFewestFitted, "fit"}, Wanted{Use::kHeld, kFewestJudged, "judge by"}}) {
     int seen = 0;
-    std::string name;  // of the first recording with this use
+    std::string name;  // the name of the first recording with this use
     for (const SplitRecording& split : splits) {
       seen += split.seen(wanted.use);
       if (name.empty() && split.last(wanted.use) > 0) name = split.recording->name;
@@ -116,8 +118,8 @@ std::vector<EffectValues> NewEffects(const Verdict& verdict,
   return {all.begin() + static_cast<long>(known.size()), all.end()};
 }
 
-// The twin with the verdict's system at level 0, and its effects at all levels: behind those that
-// belong to the body, `own` of them.
+// The twin with the verdict's system at level 0, and its effects at all levels, behind the `own`
+// effects that belong to the body.
 Twin TwinWith(Twin twin, const Verdict& verdict, std::size_t own,
               const std::vector<SplitRecording>& splits) {
   twin.training_state.clear();
@@ -145,7 +147,7 @@ Twin TwinWith(Twin twin, const Verdict& verdict, std::size_t own,
   return twin;
 }
 
-// Whom it is about; throws if a recording is of another object.
+// A diagnosis that says only what it is about. Throws Error if a recording is of another object.
 Diagnosis Introduce(const Twin& twin, const std::vector<Recording>& recordings,
                     const std::vector<Recording>& held_out) {
   Diagnosis result;
@@ -161,7 +163,7 @@ Diagnosis Introduce(const Twin& twin, const std::vector<Recording>& recordings,
   return result;
 }
 
-// What the findings say of held-out frames, and the effects with their certainty.
+// Tells what the findings say of held-out frames, and the effects with their certainty.
 void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
           const std::vector<EffectValues>& known, Diagnosis* result) {
   const Verdict &before = findings.before, &accepted = findings.accepted;
@@ -178,7 +180,8 @@ void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
                           result->certainty.end() - EffectValueCount(result->effects));
 }
 
-// The forces that are missing without and with the effects, and what they say of what is left.
+// Tells the forces that are missing without and with the effects, and what they say of what is
+// left.
 void TellResidual(const Fitting& fitting, const Findings& findings, double noise,
                   Diagnosis* result) {
   std::vector<const Verdict*> verdicts{&findings.before};
@@ -206,10 +209,10 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   result.motionless = MotionlessTrack(splits);
   const Fitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads,
                         options.journal);
-  // effects of the body itself, if it has any, or of the twin so far
+  // `own` are the effects of the body itself, if it has any; `known` are those of the twin so far
   const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
-  std::optional<Verdict> trained;  // whose training took more care than a refit of springs does
+  std::optional<Verdict> trained;  // training took more care than a refit of springs does
   if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
     trained = JudgeTwin(twin, splits);
   }

@@ -39,46 +39,47 @@ namespace physpring {
 struct DiagnosisOptions {
   int threads = 1;
   std::uint64_t seed = 0;
-  int most_effects = 3;       // accepted; at least 1
+  int most_effects = 3;       // so many are accepted at most; at least 1
   bool train_anew = true;     // step 6
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
   // What an effect must explain at least: a part of the error above the noise floor, and a part of
   // the noise floor.
   double least_gain = 0.4, least_noise = 0.2;
-  // What is worked out already, and where more of it is kept; its `progress` is called in between.
+  // Holds what is worked out already, and keeps more of it. Its `progress` is called in between.
   Journal* journal = nullptr;
 };
 
 struct EffectCandidate {
   std::string name;
   double score = 0;                // part of the squared misfit that the linearised fit takes away
-  std::optional<TrackPair> refit;  // of the best few
-  BootstrapResult gain;            // on held-out frames against the refit without it
-  EffectValues values;             // refitted
+  std::optional<TrackPair> refit;  // only the best few are refitted
+  BootstrapResult gain;            // the gain on held-out frames over the refit without it
+  EffectValues values;             // the refitted values
   bool alike = false;              // as good as the effect that was chosen, by one standard error
 };
 
-// Of all effects in one round of the loop: those refitted first, by their error, then the others,
-// by their trace.
+// All effects in one round of the loop: first those that were refitted, by their error, then the
+// others, by their trace.
 using EffectRanking = std::vector<EffectCandidate>;
 
 struct Diagnosis {
-  std::vector<std::string> fitted, judged;  // names of recordings; judged by none: by frames
-  int resting_frames = 0;                   // that are left out (split_recording.h)
+  std::vector<std::string> fitted, judged;  // names of recordings; none judged: frames are held out
+  int resting_frames = 0;                   // frames at rest that are left out (split_recording.h)
   bool trained_on = false;                  // the twin was trained on one of the recordings
   double noise_floor = 0;                   // track error of a perfect model, m
-  double motionless = 0;                    // of held-out frames, if nothing moved, m
+  double motionless = 0;                    // track error on held-out frames if nothing moved, m
   TrackPair before{}, after{};
-  BootstrapResult gain;  // of all accepted effects together, on held-out frames
+  BootstrapResult gain;  // the gain of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;
-  std::vector<ValueCertainty> certainty;  // of the values of `effects`, one after the other
-  std::vector<EffectRanking> rankings;    // of round 0, and with i effects accepted of round i
+  // One for each value of `effects`, one effect after the other.
+  std::vector<ValueCertainty> certainty;
+  std::vector<EffectRanking> rankings;  // one for each round; i effects are accepted before round i
   std::optional<Unexplained> unexplained;
-  FrameTrack before_track, after_track;  // on held-out frames
+  FrameTrack before_track, after_track;  // track errors on held-out frames
   // Forces that the model lacks on the first recording, without and with the effects.
   ResidualPattern residual_before, residual_after;
-  // Refitted, with the effects; and its track error on all frames where step 9 was made: all else
-  // but the values of `effects` is of the fit before that.
+  // The twin, refitted with the effects, and its track error on all frames where step 9 was made.
+  // All else but the values of `effects` is of the fit before that step.
   Twin twin;
   std::optional<double> all_frames;
 };

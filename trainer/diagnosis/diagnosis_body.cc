@@ -15,12 +15,12 @@
 namespace physpring {
 namespace {
 
-// Of an inner particle, about: on a sheet the first two, three, four shells of a regular grid, in
-// a solid the first two, the first three and part of the fourth.
+// About so many neighbours of an inner particle are tried: on a sheet the first two, three, four
+// shells of a regular grid, in a solid the first two, the first three and part of the fourth.
 constexpr int kNeighbours[] = {12, 18, 28};
 
-// Of the squared lengths of the springs at a node of a solid, the part across a plane, at least. A
-// third where they spread evenly.
+// At a node of a solid, at least this part of its springs' squared lengths is across any plane. It
+// is a third where springs spread evenly.
 constexpr double kSolid = 0.03;
 
 constexpr double kStart = 8;  // sub-steps a frame; the fit looks for a better start itself

@@ -26,7 +26,8 @@ struct DiagnosisBody {
   std::string label;
 };
 
-// Never empty; the twin's own model first. `recording` is one of the twin's object.
+// The bodies that a diagnosis tries, the twin's own model first; never empty. `recording` is one of
+// the twin's object.
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on);
 
 // Whether springs spread in all three directions around most nodes, and the body is no rod: the

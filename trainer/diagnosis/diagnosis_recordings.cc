@@ -8,9 +8,9 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostOnASide = 4, kEnoughFrames = 1000;  // to fit, and to judge by
+constexpr int kMostOnASide = 4, kEnoughFrames = 1000;  // on each side: to fit, and to judge by
 
-// Some of them, spread evenly.
+// Some of the recordings, spread evenly.
 std::vector<Recording> Some(const std::vector<Recording>& recordings) {
   int longest = 1;
   for (const Recording& recording : recordings) {

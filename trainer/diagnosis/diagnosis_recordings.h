@@ -18,7 +18,8 @@ struct DiagnosisRecordings {
 
 // Without recordings to judge by, whole runs of `data` are held out where it has enough of them
 // (HeldBackRuns): a run goes on where the one before it stopped, so parts of it know each other.
-// At most four on each side, and fewer where they are long: a thousand frames are enough.
+// ChooseRecordings takes at most four on each side, and fewer where they are long: a thousand
+// frames are enough.
 DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out);
 
 }  // namespace physpring

@@ -10,7 +10,7 @@
 namespace physpring {
 namespace {
 
-// The values of all effects of a system, one after the other: the last `count` of them.
+// The last `count` of a system's effect values, one effect after the other.
 Eigen::VectorXd LastValuesOf(const SpringMassSystem& system, int count) {
   Eigen::VectorXd values(0);
   for (const EffectValues& effect : system.effects) {
@@ -21,7 +21,8 @@ Eigen::VectorXd LastValuesOf(const SpringMassSystem& system, int count) {
   return values.tail(count);
 }
 
-// Of the gradients of stretches of rows, which go on in time, scaled to the sum over all of them.
+// How the gradients of stretches of rows, which go on in time, scatter, scaled to the sum over all
+// stretches.
 Eigen::MatrixXd GradientScatter(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& r) {
   constexpr Eigen::Index kStretches = 20;
   Eigen::MatrixXd gradients(jacobian.cols(), kStretches);

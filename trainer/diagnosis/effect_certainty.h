@@ -26,13 +26,13 @@ struct ValueCertainty {
   double unknown = 0;
 };
 
-// Of the entries of x from `first` on, from the Jacobian and the residuals left, in the entries'
-// units.
+// The certainty of the entries of x from `first` on, in the entries' units, from the Jacobian and
+// the residuals left.
 std::vector<ValueCertainty> CertaintyFrom(const Eigen::MatrixXd& jacobian,
                                           const Eigen::VectorXd& residuals, int first);
 
-// Of the effects' values, one effect after the other, at a descent's common factors; empty if it
-// cannot be evaluated.
+// The certainty of the effects' values, one effect after the other, where a descent is; empty if
+// that cannot be evaluated.
 std::vector<ValueCertainty> CertaintyOf(const Fitting& fitting, const Descent& fit);
 
 }  // namespace physpring

@@ -18,14 +18,16 @@
 
 namespace physpring {
 
-// Of the prior on what a diagnosis moves, the springs' own parts aside (fit_model.h).
+// The precision of the prior on what a diagnosis moves. The springs' own parts have another one
+// (factors.h).
 inline constexpr double kDiagnosisPrecision = LevenbergMarquardtOptions().precision;
 
 class EffectModel {
  public:
   struct OwnRange {
     double scale = 1;
-    double limit = std::numeric_limits<double>::infinity();  // of what is handed to `own`
+    // Bounds what is handed to `own`, either way.
+    double limit = std::numeric_limits<double>::infinity();
   };
 
   EffectModel(Parameters own, OwnRange range, std::vector<EffectValues> start);

@@ -44,7 +44,7 @@ SystemMap MapOf(const EffectModel& model, const std::vector<SplitRecording>& rec
   return LimitedModel{model, ShortestStep(recordings, options.most_rate) / options.safety};
 }
 
-// Up to the last frame to fit, or the last one in use.
+// Episodes up to the last frame to fit or, without `fit_only`, up to the last one in use.
 std::vector<Episode> EpisodesOf(const std::vector<SplitRecording>& recordings, bool fit_only) {
   std::vector<Episode> episodes;
   for (const SplitRecording& split : recordings) {

@@ -14,8 +14,9 @@
 
 namespace physpring {
 
-// Sub-steps a second of a diagnosis, at least: what a soft body predicts must not hang on the step,
-// or an effect is taken for a remedy because it makes the body stiffer and so the step finer.
+// The fewest sub-steps a second of a diagnosis. What a soft body predicts must not hang on the
+// step. Else an effect is taken for a remedy because it makes the body stiffer and so the step
+// finer.
 constexpr double kLeastDiagnosisRate = 2000;
 
 // Sub-steps a second that a diagnosed system takes on recordings of that rate.
@@ -35,13 +36,13 @@ class EffectProblem : public MotionProblem {
 
   const EffectModel& model() const { return model_; }
 
-  // Predicted positions of all frames up to the last one in use, of each recording; nothing if a
-  // motion diverges.
+  // For each recording, the predicted positions in all frames up to the last one in use; nothing if
+  // a motion diverges.
   std::optional<std::vector<std::vector<Points>>> Predict(const Eigen::VectorXd& x) const;
 
  private:
   EffectModel model_;
-  LiftedMotion all_;  // up to the last frame in use
+  LiftedMotion all_;  // goes up to the last frame in use
 };
 
 // Track errors of predicted positions, one recording after the other.

@@ -13,21 +13,25 @@
 namespace physpring {
 namespace {
 
-constexpr std::size_t kTracedEffects = 6;  // on fitted bodies that are refitted at most
-constexpr std::size_t kEarlyBodies = 2;    // that effects are tried on from the start on
+constexpr std::size_t kTracedEffects = 6;  // no more than these are tried on fitted bodies
+// Effects are tried on no more than these bodies from the start on.
+constexpr std::size_t kEarlyBodies = 2;
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-constexpr double kEarlyShare = 0.4, kTraceShare = 0.5;  // of the work of a search, until then
+// Parts of a search's work that are done after effects are tried from the start on, and after they
+// are traced.
+constexpr double kEarlyShare = 0.4, kTraceShare = 0.5;
 constexpr std::size_t kMostStrong = 4;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
-// Steps of all fits, and how many of them go on after that: in all, and with one effect.
+// How many steps all fits make, and how many fits go on after that: in all, and with one effect.
 struct Cut {
   double gain;
   int steps;
   std::size_t kept, of_an_effect;
 };
-// Bodies without effects: under the highest gain, down to the one of the trace, down to none; laws
-// on the best body, strong ones on all; all effects before the trace, and after it.
+// In this order: bodies without effects under the highest gain, down to the one of the trace, and
+// down to none; laws on the best body, strong ones on all; all effects before the trace, and after
+// it; one fit once more.
 constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 4, 4}}};
 constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
 constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
@@ -40,7 +44,7 @@ constexpr std::array<Cut, 4> kAgainCuts = {
 
 bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
 
-// The best by misfit, and, beside others, the best free-form one.
+// Keeps the best fits by misfit and, beside others, the best one of each free form.
 void Keep(std::size_t count, std::size_t of_an_effect, std::vector<Descent>* fits) {
   std::stable_sort(fits->begin(), fits->end(),
                    [](const Descent& p, const Descent& q) { return p.misfit < q.misfit; });
@@ -152,7 +156,7 @@ std::vector<Descent> FitFromStart(const Fitting& fitting, const std::vector<Desc
   return fits;
 }
 
-// The best by score, that are worth a refit.
+// The traces with the best scores, as far as they are worth a refit.
 std::vector<EffectTrace> BestTraces(std::vector<EffectTrace> traces) {
   std::erase_if(traces, [](const EffectTrace& trace) { return trace.start.size() == 0; });
   std::stable_sort(traces.begin(), traces.end(),
@@ -198,7 +202,7 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
   }
   Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &fits);
   result.verdicts = JudgeAndSort(fitting, fits);
-  // of each effect the body that predicts best
+  // keeps the body that predicts best for each effect
   std::map<std::string, int> seen;
   std::erase_if(result.verdicts, [&](const Verdict& verdict) {
     return seen[verdict.descent.hypothesis.NewEffect()]++ > 0;

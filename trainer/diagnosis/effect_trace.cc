@@ -12,9 +12,10 @@
 namespace physpring {
 namespace {
 
-constexpr std::size_t kStarts = 2;  // of an effect that are looked at closely
+constexpr std::size_t kStarts = 2;  // so many starts of an effect are looked at closely
 constexpr double kLongestStep = 1.5;
-constexpr double kNone = -std::numeric_limits<double>::infinity();  // where nothing is predicted
+// The score where nothing is predicted.
+constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 struct Job {
   std::size_t effect;
@@ -27,7 +28,7 @@ class Tracer {
   Tracer(const Fitting& fitting, const Descent& fit, double gain)
       : fitting_(fitting), fit_(fit), gain_(gain) {}
 
-  // The point to trace from; false if it cannot be evaluated.
+  // Sets the point to trace from; false if it cannot be evaluated.
   bool Prepare() {
     EffectProblem own = fitting_.Problem(fit_.hypothesis, gain_);
     if (!own.FixSubsteps(fit_.x)) return false;
@@ -55,7 +56,7 @@ class Tracer {
     return along > 0 ? along * along / std::max(1e-300, response.squaredNorm()) : 0;
   }
 
-  // What a step with the effect leaves less than one without it.
+  // How much less a step with the effect leaves than one without it, as a part of that.
   double Score(const Effect& effect, const Eigen::VectorXd& start) const {
     EffectProblem problem = Add(effect, start);
     const Eigen::VectorXd x = Extend(start);
@@ -117,7 +118,7 @@ class Tracer {
   const Descent& fit_;
   const double gain_;
   Eigen::VectorXd r_;
-  Eigen::MatrixXd j0_;  // the model's own columns
+  Eigen::MatrixXd j0_;  // the columns of the model's own parameters
   Eigen::LDLT<Eigen::MatrixXd> normal0_;
   double least_ = 0;  // squared misfit after a step without a new effect
 };

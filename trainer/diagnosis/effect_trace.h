@@ -20,8 +20,8 @@ struct EffectTrace {
   Eigen::VectorXd start;  // empty if the effect cannot be evaluated here
 };
 
-// Of each of `effects` added to `fit`, in their order, under an observer of this gain. `stage`: its
-// share of the work.
+// The trace of each of `effects` added to `fit`, in their order, under an observer of this gain.
+// `stage` is the share of the work.
 std::vector<EffectTrace> TraceEffects(const Fitting& fitting, const Descent& fit,
                                       const std::vector<const Effect*>& effects, double gain,
                                       const WorkShare& stage);

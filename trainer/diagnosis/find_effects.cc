@@ -14,12 +14,13 @@
 namespace physpring {
 namespace {
 
-constexpr int kSpringSteps = 10;  // of Gauss-Newton, after an effect is found
+constexpr int kSpringSteps = 10;  // steps of Gauss-Newton after an effect is found
 constexpr int kDraws = 2000;
-constexpr double kBlock = 0.2;  // s, of the bootstrap
+constexpr double kBlock = 0.2;  // s, a block of the bootstrap
 
-// Shares of the loop: refits without an effect; and of a round the search, with the springs' refit,
-// and the training.
+// Parts of the work that are done: in the loop, after the refits without an effect; in a round,
+// after the search, after what was chosen is fitted once more, and after single springs are fitted.
+// The training takes the rest.
 constexpr double kCommonPart = 0.2, kFollowPart = 0.45, kSearchPart = 0.5, kTrainingPart = 0.65;
 
 // What stays the same in all rounds.
@@ -27,16 +28,17 @@ struct Inquiry {
   const Fitting& fitting;
   double noise_floor;
   const DiagnosisOptions& options;
-  std::vector<const Effect*> effects;  // that may be missing
+  std::vector<const Effect*> effects;  // those that may be missing
 
-  bool open() const { return !fitting.bodies()[0].trusted; }  // single springs are refitted, too
+  // Whether single springs are refitted, too.
+  bool open() const { return !fitting.bodies()[0].trusted; }
   BootstrapResult Gain(const Verdict& without, const Verdict& with) const {
     return GainOf(fitting, options.seed, without.held, with.held);
   }
   PairedErrors Compare(const Verdict& without, const Verdict& with) const {
     return {without.track.held, with.track.held, Gain(without, with)};
   }
-  // For one of so many refits.
+  // The threshold for the one that is chosen among so many refits.
   Threshold ThresholdFor(std::size_t tried) const {
     return {noise_floor, options.false_alarm, options.least_gain, options.least_noise,
             static_cast<int>(tried)};
@@ -45,18 +47,19 @@ struct Inquiry {
 
 // What is known before a round.
 struct Standing {
-  FittedBodies bodies;       // that effects are added to
+  FittedBodies bodies;       // what effects are added to
   Verdict common, accepted;  // without and with the springs' own parameters
-  // With another effect in the last round, about as good as `common`: what is added next tells.
+  // The verdict with another effect in the last round, if one was about as good as `common`. What
+  // is added next tells which is right.
   std::optional<Verdict> rival;
 };
 
-// One more effect, looked for.
+// The search for one more effect.
 struct Attempt {
   Standing beside;  // what it is added to
   EffectSearchResult search;
   bool rival_won = false;     // `beside` is the rival of the last round
-  std::size_t best = 0;       // of search.verdicts
+  std::size_t best = 0;       // an index of search.verdicts
   Verdict with_springs = {};  // the best one with its single springs fitted, where that was done
 
   bool found() const { return !search.verdicts.empty(); }
@@ -91,7 +94,7 @@ Eigen::Index NewParametersOf(const Verdict& verdict) {
   return verdict.descent.hypothesis.NewParameters();
 }
 
-// The second one only if it predicts the held-out frames better.
+// The second verdict only if it predicts the held-out frames better.
 const Verdict& Better(const Verdict& verdict, const Verdict& offered) {
   return offered.track.held < verdict.track.held ? offered : verdict;
 }
@@ -117,8 +120,8 @@ std::optional<Standing> FitDeclared(const Fitting& fitting, const std::vector<Ef
   return Standing{std::move(bodies), free[0], free[0], {}};
 }
 
-// One more effect, beside those that are accepted or beside a rival's, which then takes their
-// place.
+// Searches for one more effect beside those that are accepted, or beside a rival's, which then
+// takes their place.
 Attempt Search(const Inquiry& inquiry, const Standing& standing, const WorkShare& stage) {
   const auto search = [&](const FittedBodies& bodies, const WorkShare& part) {
     return SearchEffects(inquiry.fitting, bodies, inquiry.effects, part);
@@ -154,7 +157,7 @@ Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int rou
   Verdict& chosen = attempt.search.verdicts[attempt.best];
   if (chosen.track.held > kExplained * inquiry.noise_floor) {
     const WorkShare share = stage.Part(kFollowPart, kSearchPart);
-    // first what it is compared with: what that gains is no merit of the effect
+    // what it is compared with comes first: what that gains is no merit of the effect
     Standing& beside = attempt.beside;
     beside.common = FollowAgain(inquiry.fitting, share.Part(0, 0.5), beside.common);
     if (round == 0) beside.accepted = Better(beside.accepted, beside.common);
@@ -163,8 +166,8 @@ Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int rou
   return attempt;
 }
 
-// The attempt with single springs fitted of what was chosen, and in the first round of the model
-// without it, at the same time.
+// The attempt with single springs fitted: those of what was chosen and, in the first round, those
+// of the model without it, at the same time.
 Attempt FitSprings(const Inquiry& inquiry, Attempt attempt, int round, const WorkShare& stage) {
   Standing& beside = attempt.beside;
   if (attempt.found()) attempt.with_springs = attempt.chosen();
@@ -214,7 +217,8 @@ std::optional<Verdict> RivalOf(const Inquiry& inquiry, const Attempt& attempt) {
   return *rival;
 }
 
-// With the effect; where it leaves something to explain, from a training if that is better.
+// The standing with the effect. Where that leaves something to explain, it is taken from a training
+// if that is better.
 Standing Accept(const Inquiry& inquiry, const Attempt& attempt, const WorkShare& stage) {
   const Verdict& chosen = attempt.chosen();
   Standing standing{
@@ -248,7 +252,7 @@ EffectRanking Rank(const Inquiry& inquiry, const Attempt& attempt) {
   return candidates;
 }
 
-// Once the next effect has told it from another.
+// The ranking in which `name` is not alike any more, once the next effect has told it from another.
 EffectRanking WithoutAlike(EffectRanking ranking, const std::string& name) {
   for (EffectCandidate& candidate : ranking) {
     if (candidate.name == name) candidate.alike = false;
@@ -256,7 +260,8 @@ EffectRanking WithoutAlike(EffectRanking ranking, const std::string& name) {
   return ranking;
 }
 
-// Half of what is left after the round before, since few diagnoses need all rounds.
+// A round's share: half of what is left after the round before, since few diagnoses need all
+// rounds.
 WorkShare ShareOf(const WorkShare& rounds, int round, int most_rounds) {
   const double left = std::pow(0.5, round);
   return rounds.Part(1 - left, round + 1 == most_rounds ? 1 : 1 - left / 2);

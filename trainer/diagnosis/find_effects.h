@@ -15,18 +15,18 @@ namespace physpring {
 struct Findings {
   Verdict before, accepted;             // without any new effect, and with those that were accepted
   Verdict common;                       // as `accepted`, without the springs' own parameters
-  std::vector<EffectRanking> rankings;  // of each round
+  std::vector<EffectRanking> rankings;  // one for each round
 };
 
 // `known`: effects that the twin has besides the body's own. `trained`: the twin as it came, taken
-// where it predicts the held-out frames better than a refit. `share`: of all work. Nothing if the
-// model without new effects diverges.
+// where it predicts the held-out frames better than a refit. `share` is the share of all work.
+// Returns nothing if the model without new effects diverges.
 std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
                                     const DiagnosisOptions& options, const WorkShare& share,
                                     const std::vector<EffectValues>& known,
                                     const std::optional<Verdict>& trained);
 
-// How much smaller the errors of held-out frames are, by a paired block bootstrap.
+// How much smaller the errors of held-out frames are with the effects, by a paired block bootstrap.
 BootstrapResult GainOf(const Fitting& fitting, std::uint64_t seed, const FrameTrack& without,
                        const FrameTrack& with);
 

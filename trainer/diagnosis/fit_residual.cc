@@ -10,7 +10,7 @@
 namespace physpring {
 namespace {
 
-// As one vector, and back.
+// Residual forces as one vector, and back.
 Eigen::VectorXd Pack(const ResidualForce& residual) {
   const Eigen::Index nodes = residual.noise.size(), each = 3 * nodes;
   const auto steps = static_cast<Eigen::Index>(residual.force.size());

@@ -10,7 +10,8 @@
 
 namespace physpring {
 
-// `deviation`: of the measurements, m, a coordinate.
+// The patterns of the forces, one for each verdict. `deviation` is the standard deviation of a
+// measured coordinate, m.
 std::vector<ResidualPattern> ResidualsOf(const Fitting& fitting,
                                          const std::vector<const Verdict*>& verdicts,
                                          double deviation, const WorkShare& share);

@@ -16,19 +16,21 @@
 namespace physpring {
 namespace {
 
-// Of common factors that hardly move (their logarithms): what a training on other recordings found
-// may be wrong by a quarter, but not be undone by an effect that does the opposite.
+// The range of common factors that hardly move (their logarithms). What a training on other
+// recordings found may be wrong by a quarter, but an effect that does the opposite must not undo
+// it.
 constexpr EffectModel::OwnRange kTrusted{0.05, 0.25};
 constexpr int kSpringConjugateGradients = 20;
-constexpr double kEffectScale = 30;  // of an effect's parameters beside the springs' own
+constexpr double kEffectScale = 30;  // how strongly effects act beside the springs' own parts
 
-// Of single springs, first under an observer with this gain.
+// Single springs are first fitted under an observer with this gain, for so many steps.
 constexpr double kFollowedGain = 0.05;
 constexpr int kFollowedSpringSteps = 3;
 
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
 constexpr double kMostRate = 10000, kMostCommonRate = 5000;
-constexpr double kTrustedRoom = 1.25;  // above what a trusted body takes as it came
+// A trusted body may take so many times the sub-steps a second that it came with.
+constexpr double kTrustedRoom = 1.25;
 
 // The state of either method as one vector, and back.
 template <class State>
@@ -47,7 +49,7 @@ void Unpack(const Eigen::VectorXd& packed, State* state) {
   state->converged = packed[size + 2] != 0;
 }
 
-// The trainer's, and for the effects the one of Levenberg-Marquardt.
+// The prior of the trainer and, for the effects, the one of Levenberg-Marquardt.
 GaussNewtonOptions Prior(const EffectModel& model) {
   GaussNewtonOptions options = SpringPrior(model.own());
   options.conjugate_gradient_steps = kSpringConjugateGradients;

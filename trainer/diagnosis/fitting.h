@@ -15,7 +15,7 @@
 
 namespace physpring {
 
-// Sets `held` and `track` from the particles' predicted positions, those of each recording.
+// Sets `held` and `track` of the verdict from the particles' predicted positions in each recording.
 void ScorePrediction(const std::vector<SplitRecording>& recordings,
                      const std::vector<std::vector<Points>>& predicted, Verdict* verdict);
 
@@ -36,25 +36,26 @@ class Fitting {
   Journal& journal() const { return journal_ ? *journal_ : *own_journal_; }
   double difference() const;  // step of forward differences; longer where contacts jump
 
-  // A descent with that body that begins as soft or stiff as predicts best under the highest gain.
-  // Not fitted yet; its x is empty if the motion diverges at each stiffness.
+  // A descent with that body, not fitted yet. It begins with the stiffness that predicts best under
+  // the highest gain. Its x is empty if the motion diverges at each stiffness.
   Descent Begin(std::size_t body, const std::vector<EffectValues>& effects) const;
 
   EffectModel Model(const Hypothesis& hypothesis) const;
-  // Under an observer of this gain, which sees the fit frames only.
+  // The problem of fitting a hypothesis under an observer of this gain, which sees the fit frames
+  // only.
   EffectProblem Problem(const Hypothesis& hypothesis, double gain) const;
 
-  // At most `steps` of Levenberg-Marquardt for each of them, on several threads. Those that cannot
-  // be evaluated are taken out.
+  // Makes at most `steps` steps of Levenberg-Marquardt for each of the descents, on several
+  // threads. Those that cannot be evaluated are taken out.
   void Descend(double gain, int steps, std::vector<Descent>* descents) const;
 
-  // Predicts everything; nothing if a motion diverges.
+  // Predicts everything and judges it; nothing if a motion diverges.
   std::optional<Verdict> Judge(const Descent& descent) const;
-  // In their order; those that diverge are left out.
+  // The verdicts on the descents, in their order. Those that diverge are left out.
   std::vector<Verdict> JudgeAll(const std::vector<Descent>& descents) const;
 
-  // Single springs of a verdict from common factors, too, under an observer and then for at most
-  // `steps` without one; the same verdict if that diverges.
+  // Fits single springs, too, for a verdict from common factors: under an observer, and then for at
+  // most `steps` steps without one. Returns the same verdict if that diverges.
   Verdict RefitSprings(int steps, const Verdict& verdict) const;
 
  private:

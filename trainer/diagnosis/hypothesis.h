@@ -15,17 +15,17 @@
 namespace physpring {
 
 struct Hypothesis {
-  std::size_t body = 0;               // of Fitting::bodies
-  std::vector<EffectValues> effects;  // as the search begins; the new one last
-  double start_substeps = 0;          // a frame, as stiff as which the body's springs begin
+  std::size_t body = 0;               // an index of Fitting::bodies
+  std::vector<EffectValues> effects;  // as the search begins with them; the new one is last
+  double start_substeps = 0;  // the body's springs begin as stiff as so many sub-steps a frame
 
-  // Of all effects.
+  // How many parameters all effects have.
   Eigen::Index ParameterCount() const {
     Eigen::Index count = 0;
     for (const EffectValues& effect : effects) count += effect.values.size();
     return count;
   }
-  // Of the new effect, and its name; 0 and empty without any.
+  // How many the new effect has, and its name; 0 and empty without any.
   Eigen::Index NewParameters() const { return effects.empty() ? 0 : effects.back().values.size(); }
   std::string NewEffect() const { return effects.empty() ? "" : effects.back().name; }
 };
@@ -33,7 +33,8 @@ struct Hypothesis {
 struct Descent {
   Hypothesis hypothesis;
   Eigen::VectorXd x;  // common factors, then effects (effect_model.h); empty: no motion is stable
-  double misfit = std::numeric_limits<double>::infinity();  // mean of r^2, m^2, where last fitted
+  // The mean of r^2, m^2, when the descent was last fitted.
+  double misfit = std::numeric_limits<double>::infinity();
   double damping = 1e-2;
   bool converged = false;
 };
@@ -46,9 +47,9 @@ struct TrackPair {
 struct Verdict {
   enum class Provenance { kCommonFactors, kSprings, kTraining };
   Provenance provenance = Provenance::kCommonFactors;
-  Descent descent;  // that it comes from; of a training there is none
+  Descent descent;  // what it comes from; a training has none
   SpringMassSystem system;
-  bool controller_velocity = true;  // whether dashpots feel it
+  bool controller_velocity = true;  // whether dashpots feel that
   FrameTrack held;
   TrackPair track{};
 };

@@ -9,9 +9,9 @@
 
 namespace physpring {
 
-// The common factors and the effects of the verdict that was chosen, from where they are, by
-// Levenberg-Marquardt on all frames, the held-out ones included: `track.fit` is over all of them,
-// and nothing is left to judge by. Nothing if the motion diverges.
+// Fits the common factors and the effects of the chosen verdict, from where they are, by
+// Levenberg-Marquardt on all frames, the held-out ones included. `track.fit` is over all of them,
+// and nothing is left to judge by. Returns nothing if the motion diverges.
 std::optional<Verdict> FitAllFrames(const Fitting& fitting, const WorkShare& share,
                                     const Verdict& chosen);
 

@@ -22,7 +22,7 @@ double MeasurementNoise(const std::vector<const Recording*>& recordings) {
   if (differences.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  constexpr double kMedian = 0.6745;  // of |z|, z of deviation 1
+  constexpr double kMedian = 0.6745;  // the median of |z|, for normal z of deviation 1
   return *middle / (kMedian * std::sqrt(70.0));
 }
 

@@ -19,15 +19,17 @@
 namespace physpring {
 namespace {
 
-// Of the observer: the first under which forces can be found. Motions that part quickly (a body
-// that slips) need more, and show smaller forces.
+// The observer's gains. The first under which forces can be found is taken. Motions that part
+// quickly (a body that slips) need more, and show smaller forces.
 constexpr std::array<double, 3> kResidualGains = {0.35, 0.6, 0.85};
-constexpr int kLinearisations = 3, kKickSteps = 12;  // of conjugate gradients, for each
-constexpr double kEnough = 1.05;                     // times the variance of the measurements
-constexpr double kGainsEnough =
-    0.999;  // a linearisation that leaves more of the square is the last one
+// The most linearisations, and the most steps of conjugate gradients in each.
+constexpr int kLinearisations = 3, kKickSteps = 12;
+// The mean square that is small enough, times the variance of the measurements.
+constexpr double kEnough = 1.05;
+// A linearisation that leaves more than this part of the square is the last one.
+constexpr double kGainsEnough = 0.999;
 
-// Kicks, as one vector: 3 x nodes of each frame but the last.
+// The problem of finding kicks, as one vector: 3 x nodes for each frame but the last.
 class KickProblem {
  public:
   KickProblem(const SpringMassSystem& system, const Recording& recording,
@@ -116,8 +118,8 @@ class KickProblem {
   const SpringMassSystem& system_;
   const Recording& recording_;
   ResidualForceOptions options_;
-  double gain_;                            // of the observer
-  int frames_;                             // up to the last one in which something is seen
+  double gain_;  // the observer's gain
+  int frames_;   // how many, up to the last one in which something is seen
   std::vector<std::pair<int, int>> seen_;  // frame, point
   // the point of linearisation
   std::vector<Points> kicks_;
@@ -154,8 +156,8 @@ Eigen::VectorXd NormalNoise(Eigen::Index count, double deviation) {
   return noise;
 }
 
-// Under an observer of this gain; nothing if the motion diverges, or, `unless_useless`, if the
-// first linearisation does not lead to smaller residuals.
+// The residual forces under an observer of this gain; nothing if the motion diverges, or,
+// `unless_useless`, if the first linearisation does not lead to smaller residuals.
 std::optional<ResidualForce> FindUnder(double gain, bool unless_useless,
                                        const SpringMassSystem& system, const Recording& recording,
                                        const ResidualForceOptions& options) {

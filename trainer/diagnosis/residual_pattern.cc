@@ -37,7 +37,7 @@ BinnedMeans Bin(std::vector<Sample> samples) {
   return means;
 }
 
-// Of each node: the sum over its springs of the strain, towards the other end; springs to
+// For each node, the sum over its springs of the strain, towards the other end. Springs to
 // controllers are left out.
 Points Stretch(const SpringMassSystem& system, const Points& position) {
   Points stretch = Points::Zero(3, position.cols());
@@ -135,7 +135,7 @@ ResidualPattern PatternOf(const ResidualForce& residual, const SpringMassSystem&
   pattern.spectrum = Spectrum(pattern.net);
   pattern.frequency_step = fps / static_cast<double>(steps);
 
-  // forces m a are nearest to `force`, by force^2 / mass, with the mean of all forces over M
+  // forces m a come nearest to `force`, by force^2 / mass, if a is the mean of all forces over M
   const auto mass = system.mass.head(nodes);
   pattern.acceleration = pattern.net.rowwise().mean() / mass.sum();
   double all = 0;

@@ -18,11 +18,11 @@ struct BinnedMeans {
 };
 
 struct ResidualPattern {
-  double root_mean_square = 0;  // of the force on a node, N
-  double noise = 0;             // the same, of what noise alone would make, N
+  double root_mean_square = 0;  // the root mean square force on a node, N
+  double noise = 0;             // the same for the forces that noise alone would make, N
   double left = 0;    // root mean square of a measured coordinate's residual with the forces, m
-  Points node;        // 3 x nodes, in the reference configuration, m
-  Points mean_force;  // on each node, over time, N
+  Points node;        // the nodes' places in the reference configuration, 3 x nodes, m
+  Points mean_force;  // the mean over time on each node, N
   Eigen::VectorXd node_force;     // root mean square over time, on each node, N
   Points net;                     // 3 x steps of a frame: the sum over the nodes, N
   std::vector<double> over_time;  // root mean square over the nodes, each step of a frame, N
@@ -35,7 +35,7 @@ struct ResidualPattern {
   double with_velocity = 0, with_stretch = 0;
   // Part of the forces' square that one acceleration, the same everywhere and always, makes up.
   double constant = 0;
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // that one, m/s^2
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // this acceleration, m/s^2
 };
 
 ResidualPattern PatternOf(const ResidualForce& residual, const SpringMassSystem& system,

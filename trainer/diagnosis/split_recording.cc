@@ -10,9 +10,11 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-constexpr double kHeldBlock = 0.3;                 // s
-constexpr double kRest = 0.02, kKeptOfRest = 0.5;  // of the greatest distance from the end; s
-constexpr int kEnd = 5;                            // frames, whose mean is the end
+constexpr double kHeldBlock = 0.3;  // s
+// The body rests where it is nearer to its end than this part of the greatest distance, noise
+// aside; so many seconds of rest are kept.
+constexpr double kRest = 0.02, kKeptOfRest = 0.5;
+constexpr int kEnd = 5;  // the mean of so many frames is the end
 
 // The mean square of the distance from the end, of those columns that are seen, in each frame.
 std::vector<double> SquaresFromEnd(const std::vector<Points>& frames) {
@@ -53,7 +55,7 @@ std::size_t FirstAtRest(const std::vector<double>& squares, double noise) {
 
 SplitRecording HoldOutFrames(const Recording& recording) {
   SplitRecording split = UseAll(recording, Use::kFit);
-  // of a short recording still one block of the four
+  // a short recording still has one block of the four
   const int most = std::max(1, recording.frame_count() / 4);
   const int usual = std::max(1, static_cast<int>(kHeldBlock * recording.fps));
   const auto block = static_cast<std::size_t>(std::min(usual, most));

@@ -9,7 +9,7 @@ namespace physpring {
 
 namespace {
 
-// A recording after the other, with the frames to fit only.
+// The recordings that have frames to fit, with these frames only. Each counts as one of its own.
 FitData DataOf(const std::vector<SplitRecording>& recordings) {
   FitData data;
   for (const SplitRecording& split : recordings) {

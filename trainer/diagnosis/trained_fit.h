@@ -11,11 +11,11 @@
 
 namespace physpring {
 
-// On the twin as it came; nothing if its motion diverges.
+// The verdict on the twin as it came; nothing if its motion diverges.
 std::optional<Verdict> JudgeTwin(const Twin& twin, const std::vector<SplitRecording>& recordings);
 
-// On a training on the frames to fit, as `physpring train --effects` does, of a twin that has these
-// effects, at least one; nothing if the motion diverges.
+// The verdict on a training on the frames to fit, as `physpring train --effects` does, of a twin
+// that has these effects, at least one; nothing if the motion diverges.
 std::optional<Verdict> TrainAnew(const Fitting& fitting, const WorkShare& share,
                                  const std::vector<EffectValues>& effects);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pattern of what no effect explains, from the forces that are still missing. (The error of the
-// prediction would not do: of a body that hangs it is largest at the free end, whatever the cause.)
+// prediction would not do: for a body that hangs it is largest at the free end, whatever the
+// cause.)
 #ifndef PHYSPRING_TRAINER_DIAGNOSIS_UNEXPLAINED_H_
 #define PHYSPRING_TRAINER_DIAGNOSIS_UNEXPLAINED_H_
 
@@ -14,10 +15,10 @@ struct Unexplained {
   int particle = 0;      // where the missing force is largest over time ...
   // ... and its place in the reference configuration, m
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  double first_time = 0, last_time = 0;  // the shortest time with half of its square, s
-  // Of the sum over all nodes, in the mean of that time.
+  double first_time = 0, last_time = 0;  // the shortest time that has half of its square, s
+  // The direction of the force summed over all nodes, in the mean of that time.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double steadiness = 0;  // of that direction: 1 it stays, 0 it turns to all sides alike
+  double steadiness = 0;  // how steady the direction is: 1 it stays, 0 it turns to all sides alike
 };
 
 // `track`: error left above the noise floor, m.

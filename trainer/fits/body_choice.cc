@@ -18,14 +18,15 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostChoiceRecordings = 4;  // that start values are sought on
-// What is fitted in a round under which of kObserverGains, and how many go on from it with either
-// treatment of the controllers' velocity (what that is worth shows with single springs).
+constexpr int kMostChoiceRecordings = 4;  // start values are sought on no more than these
+// A round of the choice: under which of kObserverGains bodies are fitted, and how many go on from
+// it with either treatment of the controllers' velocity (what that is worth shows with single
+// springs).
 struct Round {
   const char* name;
-  double first_part, last_part;  // of the choice's work
+  double first_part, last_part;  // where it begins and ends in the choice's work
   int first_gain, last_gain;
-  int most_steps;  // with each gain
+  int most_steps;  // the most with each gain
   int left_of_each;
 };
 constexpr std::array<Round, 3> kRounds = {
@@ -39,8 +40,8 @@ constexpr std::array<double, 3> kEffectChanges = {0, -2, 2};
 // A candidate on its way through the rounds.
 struct Contender {
   ChosenBody model;
-  Eigen::VectorXd springs = {};  // fitted in the last round
-  double score = kInfinity;      // of the last round it was in, m
+  Eigen::VectorXd springs = {};  // the springs' own values from the last round
+  double score = kInfinity;      // its score in the last round it was in, m
 };
 
 // A contender in the middle of a round.
@@ -121,7 +122,8 @@ class RoundOfChoice {
   const TrainOptions& options_;
 };
 
-// Among a few start systems from soft to stiff, slippery to rough, the one that predicts best.
+// Takes the start system that predicts best among a few, from soft to stiff and from slippery to
+// rough.
 void RoundOfChoice::SearchStart(ChosenBody* model) const {
   double least = kInfinity;
   for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
@@ -139,7 +141,7 @@ void RoundOfChoice::SearchStart(ChosenBody* model) const {
   }
 }
 
-// The error of held-back frames, under an observer of this gain.
+// The error on held-back frames under an observer of this gain.
 double RoundOfChoice::TrackError(const SpringMassSystem& system, const Body& body,
                                  double gain) const {
   RolloutOptions options = FollowOptions(first_, body, options_).rollout;
@@ -219,7 +221,7 @@ std::vector<Contender> Left(const std::vector<Contender>& all, int of_each) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return all[i].score < all[j].score; });
-  std::array<int, 2> left = {};  // with and without the controllers' velocity
+  std::array<int, 2> left = {};  // those with and those without the controllers' velocity
   std::erase_if(order, [&](std::size_t i) {
     const bool velocity = all[i].model.body.controller_velocity;
     return ++left[velocity ? 0 : 1] > of_each || !std::isfinite(all[i].score);
@@ -250,7 +252,7 @@ BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work
   for (const Body& body : CandidateBodies(first, options)) {
     contenders.push_back({{body, 0, {}, {}}});
   }
-  StartSystem(first, contenders[0].model.body, kSoftestStart);  // throws where there is none
+  StartSystem(first, contenders[0].model.body, kSoftestStart);  // throws where there is no body
 
   for (const Round& round : kRounds) {
     const bool by_free_motions =

@@ -11,10 +11,10 @@
 namespace physpring {
 namespace {
 
-constexpr GainSchedule kChainGains{3, 20};  // it goes on from the choice, and takes longer
-constexpr int kMostSearchRecordings = 24;   // whose motions are free
-constexpr int kDescents = 6;                // steps of the descent
-// Parts of the work: common factors are done, and the search.
+constexpr GainSchedule kChainGains{3, 20};  // the fit goes on from the choice, and takes longer
+constexpr int kMostSearchRecordings = 24;   // free motions are fitted on no more than these
+constexpr int kDescents = 6;                // most steps of the descent
+// Parts of the work at which common factors are done, and the search.
 constexpr double kFactorsDone = 0.45, kSearchDone = 0.73;
 
 std::string Status(const ChosenBody& model, double error) {

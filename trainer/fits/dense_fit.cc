@@ -14,7 +14,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostCommonRecordings = 4;  // that common factors are fitted to
+constexpr int kMostCommonRecordings = 4;  // common factors are fitted to no more than these
 constexpr GainSchedule kAllGains{0, 6};
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.45, kCommon = 0.5;

@@ -3,8 +3,8 @@
 //   the choice of the body and the start values of its common factors (body_choice.h)
 //   those factors again, by Levenberg-Marquardt on all fit frames, under an observer whose gain
 //   falls to 0 (observer.h); left out where the choice has fitted single springs
-//   single springs (spring_fit.h), or of a chain that bends (bodies/bending_chain.h) its common
-//   factors further, by free motions (chain_fit.h)
+//   single springs (spring_fit.h); a chain that bends (bodies/bending_chain.h) has its common
+//   factors fitted further instead, by free motions (chain_fit.h)
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FITS_DENSE_FIT_H_

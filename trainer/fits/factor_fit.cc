@@ -8,12 +8,12 @@
 namespace physpring {
 namespace {
 
-constexpr double kFirstDamping = 1e-2;  // with each gain
+constexpr double kFirstDamping = 1e-2;  // the damping with which each gain begins
 
 struct FactorFit {
   Eigen::VectorXd factors;
   int gain;           // an index of kObserverGains
-  int iteration = 0;  // with this gain
+  int iteration = 0;  // steps made with this gain
   double damping = kFirstDamping;
 
   template <class Visitor>

@@ -17,7 +17,7 @@ struct GainSchedule {
   int first_gain, most_steps;
 };
 
-// The body with factors fitted from those it has.
+// The body with its factors fitted, from those that it has.
 ChosenBody FitCommonFactors(const ChosenBody& start, const std::vector<Episode>& episodes,
                             const TrainOptions& options, const GainSchedule& schedule,
                             const Work& work);

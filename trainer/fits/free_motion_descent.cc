@@ -10,9 +10,11 @@
 namespace physpring {
 namespace {
 
-constexpr double kLongDifference = 0.1;                           // of an entry, either way
-constexpr std::array<double, 4> kLengths = {0.1, 0.2, 0.4, 0.8};  // of a step
-constexpr double kLeastGain = 0.995;  // of the error: what gains less is the last step
+constexpr double kLongDifference = 0.1;  // how far an entry is moved either way
+// The lengths of a step that are tried.
+constexpr std::array<double, 4> kLengths = {0.1, 0.2, 0.4, 0.8};
+// A step that leaves more than this part of the error is the last one.
+constexpr double kLeastGain = 0.995;
 
 }  // namespace
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// By what the fit of a chain (bodies/bending_chain.h) ends: the geometric mean of the track errors
-// of free motions, as a function of the chain's common factors. Those of a cable that whirls are
-// chaotic: small differences and adjoints of them tell little, values and long differences more.
+// What the fit of a chain (bodies/bending_chain.h) makes small at its end: the geometric mean of
+// the track errors of free motions, as a function of the chain's common factors. The free motions
+// of a cable that whirls are chaotic. Small differences and adjoints of them tell little; values
+// and long differences tell more.
 #ifndef PHYSPRING_TRAINER_FITS_FREE_MOTION_ERROR_H_
 #define PHYSPRING_TRAINER_FITS_FREE_MOTION_ERROR_H_
 
@@ -19,13 +20,13 @@ class FreeMotionError {
   FreeMotionError(const FreeMotionError&) = delete;
   FreeMotionError& operator=(const FreeMotionError&) = delete;
 
-  // m; infinite where it diverges or would need too many sub-steps.
+  // The error, m; infinite where a motion diverges or would need too many sub-steps.
   double operator()(const Eigen::VectorXd& factors) const;
 
  private:
   Parameters factors_;
   MotionProblem::Options follow_;
-  LiftedMotion motion_;  // for its sub-steps
+  LiftedMotion motion_;  // it says how many sub-steps are needed
   std::vector<Episode> episodes_;
 };
 

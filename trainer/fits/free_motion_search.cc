@@ -9,11 +9,12 @@
 namespace physpring {
 namespace {
 
-constexpr double kReach = 4;         // of each factor (parameters.h) from the start, either way
-constexpr double kDeviation = 0.25;  // of the first generation
+constexpr double kReach = 4;         // how far each factor (parameters.h) may go either way
+constexpr double kDeviation = 0.25;  // standard deviation of a factor in the first generation
 constexpr int kMostGenerations = 60;
 constexpr int kGenerationPatience = 10;
-constexpr double kWorthwhile = 0.99;  // of the error: what is worth as many generations again
+// A fall of the error to less than this part of it is worth as many generations again.
+constexpr double kWorthwhile = 0.99;
 
 }  // namespace
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of the fit of a chain (bodies/bending_chain.h): CMA-ES on those of its common factors
-// that are one value for the whole body, from where Levenberg-Marquardt left them, for the
-// geometric mean of the track errors of free motions. The motions of a cable that whirls are
-// chaotic: differences and adjoints of them tell little of where better factors are, and their
-// squares are those of a few frames in which it lost its phase. The shape of the rod stays: that is
-// seen under an observer.
+// A search at the end of the fit of a chain (bodies/bending_chain.h). CMA-ES makes the geometric
+// mean of the track errors of free motions small. It moves those of the common factors that are one
+// value for the whole body, from where Levenberg-Marquardt left them. The motions of a cable that
+// whirls are chaotic. Differences and adjoints of them tell little of where better factors are, and
+// their squares are those of a few frames in which the cable lost its phase. The shape of the rod
+// stays: that is seen under an observer.
 #ifndef PHYSPRING_TRAINER_FITS_FREE_MOTION_SEARCH_H_
 #define PHYSPRING_TRAINER_FITS_FREE_MOTION_SEARCH_H_
 
@@ -18,15 +18,15 @@ namespace physpring {
 
 class FreeMotionSearch {
  public:
-  // Starts from `factors`, whose `entries` move; makes `generations`, or as many as gain something
-  // where that is 0.
+  // Starts from `factors`, whose `entries` move. Makes `generations` generations; if that is 0, as
+  // many as gain something.
   FreeMotionSearch(const Eigen::VectorXd& factors, const std::vector<int>& entries, int generations,
                    std::uint64_t seed);
 
   bool done() const;
   double Progress() const;
 
-  // One generation, of the factors of `model`. The result does not depend on options.threads.
+  // Makes one generation of factors of `model`. The result does not depend on options.threads.
   void Step(const ChosenBody& model, const std::vector<Episode>& episodes,
             const TrainOptions& options);
 
@@ -44,9 +44,9 @@ class FreeMotionSearch {
 
   Eigen::VectorXd start_;
   std::vector<int> entries_;
-  int generations_;  // 0: while it gains
+  int generations_;  // 0: as long as they gain something
   CmaEs search_;
-  double gained_error_;  // the best when it last gained more than little, m
+  double gained_error_;  // the best error when it last fell by more than little, m
   int slow_ = 0;         // generations since then
 };
 

@@ -21,10 +21,10 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostLevelRecordings = 4;  // that common factors are fitted to
+constexpr int kMostLevelRecordings = 4;  // common factors are fitted to no more than these
 constexpr int kFirstGain = 1;  // an index of kObserverGains: a Galerkin projection is not far off
 constexpr int kLevelStepsPerGain = 4;
-constexpr double kFirstLevelDamping = 1e-2;  // with each gain
+constexpr double kFirstLevelDamping = 1e-2;  // the damping with which each gain begins
 constexpr int kLevelGaussNewtonSteps = 6;
 constexpr int kLevelConjugateGradients = 12;
 // Parts of the work.
@@ -33,9 +33,9 @@ constexpr double kTrialsDone = 0.15, kCommonDone = 0.3, kNetworkDone = 0.45;
 struct CommonFit {
   Eigen::VectorXd common;
   int gain;           // an index of kObserverGains
-  int iteration = 0;  // with this gain
+  int iteration = 0;  // steps made with this gain
   double damping = kFirstLevelDamping;
-  double mean_square = 0;  // of the residuals, m^2; infinite where it diverges
+  double mean_square = 0;  // the residuals' mean square, m^2; infinite where the level diverges
 
   template <class Visitor>
   void Visit(Visitor&& visit) {
@@ -69,7 +69,7 @@ StepReport StepCommon(const LevelModel& model, int threads, int last_gain, Commo
   return report;
 }
 
-// The common factors under all gains but the last: what candidates are judged by.
+// Fits the common factors under all gains but the last. Candidates are judged by this fit.
 CommonFit TryCommonFactors(const LevelModel& model, const std::function<int()>& threads,
                            const Work& work) {
   const CommonFit start{Eigen::VectorXd::Zero(model.CommonParameters().size()), kFirstGain};
@@ -77,7 +77,7 @@ CommonFit TryCommonFactors(const LevelModel& model, const std::function<int()>& 
       start, [&](CommonFit* fit) { return StepCommon(model, threads(), kLastGain - 1, fit); });
 }
 
-// The index of the best candidate; `fits` are theirs.
+// The index of the best candidate. `fits` are those of the candidates.
 std::size_t BestOf(const std::vector<CommonFit>& fits) {
   return static_cast<std::size_t>(
       std::min_element(fits.begin(), fits.end(),
@@ -103,7 +103,9 @@ StepReport StepNetwork(const LevelModel& model, const Eigen::VectorXd& common,
   } else if (fit->is_turn_of_weights()) {
     fit->Update(network.Adjoint(loss->gradient));
   } else {
-    Features springs_bar, system_bar;  // of the same logits
+    // derivatives with respect to the network's corrections: the contact's values add to the same
+    // logits
+    Features springs_bar, system_bar;
     CorrectionsAdjoint(system, loss->gradient, &springs_bar, &system_bar);
     fit->Update(system_bar.rightCols(2).transpose());
   }
@@ -158,8 +160,8 @@ StepReport StepSprings(const LevelModel& model, const Parameters& parameters, Sp
                       PointMillimetres(fit->mean_square))};
 }
 
-// The system with single springs, fitted from `corrected` on; `mean_square` is that of the common
-// factors.
+// The system with single springs, fitted from `corrected` on; `mean_square` is that of the fit of
+// common factors.
 SpringMassSystem FitSpringsOfLevel(const LevelModel& model, const SpringMassSystem& corrected,
                                    double mean_square, const Work& work) {
   const Parameters parameters = SpringFactors(corrected, model.first());

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fit of the parameters of a coarse level, whose topology, masses and first values are a
-// Galerkin projection, to the measured points through the lift, in three parts:
+// The fit of the parameters of a coarse level to the measured points, through the lift. Topology,
+// masses and first values of the level are a Galerkin projection. The fit has three parts:
 //   common   the same few factors for all springs (parameters.h), by Levenberg-Marquardt, under an
 //            observer whose gain falls to 0 (observer.h)
-//   network  corrections by the graph network and of the contact (network/corrections_fit.h)
+//   network  corrections by the graph network, and those of the contact
+//            (network/corrections_fit.h)
 //   springs  every spring's own stiffness, dashpot and rest length, by Gauss-Newton
-// Of several projections the one is taken whose common factors follow the recordings best.
+// If there are several projections, the one whose common factors follow the recordings best is
+// taken.
 #ifndef PHYSPRING_TRAINER_FITS_LEVEL_FIT_H_
 #define PHYSPRING_TRAINER_FITS_LEVEL_FIT_H_
 
@@ -21,7 +23,7 @@ namespace physpring {
 
 struct FittedLevel {
   TwinLevel level;
-  Eigen::VectorXd weights;  // of the network, as they are after it
+  Eigen::VectorXd weights;  // the network's weights after the fit
 };
 
 // Fits the last level of each of `twins`, which are the same but for that one, with a network that

@@ -14,9 +14,9 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostJudgingRecordings = 4;  // that frames are held back of
+constexpr int kMostJudgingRecordings = 4;  // frames are held back on no more than these
 
-// Sub-steps of a frame: never more than level 0 needs.
+// The most sub-steps of a frame: as many as level 0 needs.
 int MostSubsteps(const TwinLevel& dense, double fps) {
   return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
                   static_cast<int>(std::ceil(dense.substeps_per_second / fps)));

@@ -34,17 +34,18 @@ class LevelModel {
   const GraphNetwork& network() const { return network_; }
 
   Parameters CommonParameters() const;
-  // What the network corrects: the common factors, and the contact's coefficients as they are
-  // updated. The network adds to the same logits.
+  // The system that the network corrects: with the common factors, and with the contact's
+  // coefficients as they are updated. The network adds to the same logits as these updates.
   SpringMassSystem NetworkBase(const LevelValues& values) const;
-  // With the network's corrections.
+  // The system with the network's corrections.
   SpringMassSystem Corrected(const LevelValues& values) const;
 
-  // The level on at most `most` recordings under an observer of this gain. In which frames it is
-  // seen: all that are for fitting, or those of them that are not held back.
+  // The motion of the level. Motion goes through all frames for fitting of at most `most`
+  // recordings, under an observer of this gain. MotionNotHeldBack leaves out the frames that are
+  // held back, and has no observer.
   LiftedMotion Motion(int threads, double gain, int most) const;
   LiftedMotion MotionNotHeldBack() const;
-  // For differences that may leave the neighbourhood of the motion.
+  // The motion for differences that may leave its neighbourhood: its adjoint is never cut.
   LiftedMotion RoughMotion(int most) const;
 
   // The mean track error of the held-back frames, m, under the observer's last gain above 0: free
@@ -60,7 +61,7 @@ class LevelModel {
   const TrainOptions& options_;
   Twin twin_;
   int level_;
-  int most_substeps_;  // of a frame
+  int most_substeps_;  // the most sub-steps of a frame
   HeldBack held_back_;
   const GraphNetwork& network_;
 };

@@ -16,11 +16,12 @@ namespace physpring {
 namespace {
 
 constexpr int kFirstSpringGain = 3;    // an index of kObserverGains
-constexpr int kFollowedSteps = 3;      // of Gauss-Newton with each gain before the last ...
-constexpr int kGaussNewtonSteps = 15;  // ... and with that one
+constexpr int kFollowedSteps = 3;      // steps of Gauss-Newton with each gain before the last ...
+constexpr int kGaussNewtonSteps = 15;  // ... and with the last one
 constexpr int kAdamSteps = 200;
-constexpr int kPatience = 40;           // Adam ends after so many steps in a row that gain little
-constexpr double kLearningRate = 0.03;  // of log-stiffnesses; others in proportion to their prior
+constexpr int kPatience = 40;  // Adam ends after so many steps in a row that gain little
+// The rate of log-stiffnesses; others move in proportion to their prior.
+constexpr double kLearningRate = 0.03;
 constexpr double kAstray = 1.5;  // Adam turns back where the mean square is so much above the best
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
@@ -29,7 +30,7 @@ constexpr double kFollowed = 0.4, kGaussNewton = 0.6;
 struct GaussNewtonFit {
   Eigen::VectorXd x;
   int gain = kFirstSpringGain;
-  int iteration = 0;  // with this gain
+  int iteration = 0;  // steps made with this gain
   int slow = 0;       // steps in a row that gained little
   double damping = 1e-3, mean_square = 0;
 
@@ -44,9 +45,9 @@ struct AdamFit {
   Adam adam;
   int iteration = 0;
   int slow = 0;     // steps in a row that gained little
-  double rate = 1;  // relative to the schedule
+  double rate = 1;  // the learning rate, relative to the schedule
   double best_mean_square = kInfinity;
-  double gained_mean_square = kInfinity;  // the best when it last gained more than little
+  double gained_mean_square = kInfinity;  // the best one when it last fell by more than little
 
   explicit AdamFit(const Eigen::VectorXd& start) : x(start), best(start), adam(start.size()) {}
   template <class Visitor>
@@ -181,7 +182,7 @@ Eigen::VectorXd FitSprings(const ChosenBody& model, const FitData& data,
                            const Work& work) {
   const SpringFit springs(model, data, options);
   GaussNewtonFit fit{x};
-  // with little to gain early on, the residuals are too rough for Gauss-Newton
+  // where Gauss-Newton gains little early on, the residuals are too rough for it
   bool rough = true;
   if (GaussNewtonSteps(options) > 0) {
     fit = work.Part("single springs (Gauss-Newton)", 0, kGaussNewton)

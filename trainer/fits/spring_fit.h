@@ -11,7 +11,7 @@
 
 namespace physpring {
 
-// Gauss-Newton's steps with the last gain at most; 0: it is not asked for.
+// How many steps Gauss-Newton makes with the last gain, at most; 0 if it is not asked for.
 int GaussNewtonSteps(const TrainOptions& options);
 
 // The springs' own values, fitted from `x` on.

@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr double kDensePart = 0.5;  // of the work, that level 0 takes where there are more
+constexpr double kDensePart = 0.5;  // level 0's part of the work where there are more levels
 
 Twin Level0Of(const Twin& twin, const Work& work) {
   Twin dense = twin;

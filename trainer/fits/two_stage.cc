@@ -21,9 +21,9 @@ namespace {
 constexpr int kGenerations = 20;
 constexpr double kStepSize = 1.0 / 6;
 constexpr double kFailed = 1e6;      // m^2: objective of a candidate that cannot be simulated
-constexpr double kPassRollouts = 5;  // time of a pass, in rollouts of the fit frames
+constexpr double kPassRollouts = 5;  // a pass takes as long as so many rollouts of the fit frames
 
-// Sum of the losses of frames 1, 2, ..., or kFailed for each.
+// Sum of the losses of frames 1, 2, ...; kFailed for each of them where the motion diverges.
 double SumOfLosses(const SpringMassSystem& system, const Recording& recording,
                    const RolloutOptions& options) {
   const auto rollout = RollOut(system, {&recording, recording.train_frames}, options);
@@ -44,7 +44,7 @@ bool JoinsNoController(const SpringMassSystem& system) {
 // The search in the unit cube, in the middle of a generation.
 struct Search {
   CmaEs cma_es;
-  std::vector<double> objectives;  // of this generation's candidates, as far as known
+  std::vector<double> objectives;  // those of this generation's candidates, as far as known
 
   template <class Visitor>
   void Visit(Visitor&& visit) {
@@ -57,26 +57,26 @@ class TwoStage {
  public:
   TwoStage(const FitData& data, const TrainOptions& options);
 
-  // As many candidates of a generation as there are threads.
+  // Tries as many candidates of a generation as there are threads.
   StepReport StepSearch(Search* search) const;
-  // One pass of the second stage, after a search that ended with `best` (of the unit cube).
+  // Makes one pass of the second stage, after a search that ended with `searched`.
   StepReport StepFirstOrder(const CmaEsState& searched, FirstOrderStage* stage) const;
 
-  SpringMassSystem SystemAt(const Eigen::VectorXd& point) const;  // of the unit cube
+  SpringMassSystem SystemAt(const Eigen::VectorXd& point) const;  // at a point of the unit cube
   Twin TwinOf(const SpringMassSystem& system) const;
   int passes() const { return passes_; }
 
  private:
   void ExpectSomeSuccess(const CmaEsState& search) const;
   std::vector<double> Objectives(const std::vector<Eigen::VectorXd>& points) const;
-  int Substeps(const SpringMassSystem& system) const;  // of a frame
+  int Substeps(const SpringMassSystem& system) const;  // how many a frame takes
   RolloutOptions RolloutOptionsFor(const SpringMassSystem& system) const;
   std::string DescribeBest(const CmaEsState& searched, const FirstOrderStage& stage) const;
 
   const FitData& data_;
   const TrainOptions& options_;
   double length_scale_;
-  int passes_;  // of the second stage
+  int passes_;  // how many the second stage makes
 };
 
 TwoStage::TwoStage(const FitData& data, const TrainOptions& options)
@@ -84,7 +84,7 @@ TwoStage::TwoStage(const FitData& data, const TrainOptions& options)
       options_(options),
       length_scale_(PhysTwinLengthScale(data_.recordings.at(0))),
       passes_(options.epochs > 0 ? options.epochs : PhysTwinPasses(data_.recordings[0])) {
-  // the widest search; throws where the recording gives no body
+  // the widest search for springs; SystemAt throws where the recording gives no body
   const Eigen::VectorXd widest = Eigen::VectorXd::Ones(kPhysTwinVariables);
   if (!JoinsNoController(SystemAt(widest))) return;
   throw Error(

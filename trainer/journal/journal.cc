@@ -150,7 +150,7 @@ constexpr char kResults[] = "", kChains[] = "chain_";
 
 }  // namespace
 
-// Of a chain: whether it is done, its part, then its state. The status is not kept.
+// A chain is kept as a row: whether it is done, its part, then its state. The status is not kept.
 Journal::Arrays Journal::Save() const {
   Rows results, chains;
   for (const auto& [hash, result] : results_) results.Add(hash, result);

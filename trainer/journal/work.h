@@ -17,8 +17,8 @@ namespace physpring {
 // What one step of a chain did.
 struct StepReport {
   bool done = false;   // it was the last step
-  double part = 0;     // of the chain that is done, 0 to 1
-  std::string status;  // in one line, for people
+  double part = 0;     // the part of the chain that is done, 0 to 1
+  std::string status;  // what the step did, in one line, for people
 };
 
 class Work {
@@ -55,7 +55,7 @@ class Work {
 
   // Takes `state` through step after step until one says that it was the last, from the last state
   // that the journal keeps of this chain. The chain is known by the key and by where it starts;
-  // `step` must depend on nothing else. From any thread.
+  // `step` must depend on nothing else. Any thread may call this.
   template <class State, class Step>  // StepReport step(State*)
   State Follow(State state, const Step& step) const {
     PieceKey key = key_;
@@ -76,7 +76,7 @@ class Work {
     return state;
   }
 
-  // The twin so far, at the end of a part: what a checkpoint shows.
+  // Hands on the twin so far, at the end of a part. A checkpoint shows it.
   void Reached(const Twin& twin) const {
     if (journal_->reached) journal_->reached(twin);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A walk along a recording, a frame at a time, with the derivatives of each frame's loss that reach
-// back to the start of that frame and no further: what was before is taken as given. So PhysTwin
-// trains; the parameters may change from one frame to the next.
+// A walk along a recording, a frame at a time. The derivatives of each frame's loss reach back to
+// the start of that frame and no further: what was before is taken as given. PhysTwin trains in
+// this way. The parameters may change from one frame to the next.
 #ifndef PHYSPRING_TRAINER_MOTION_FRAME_WALK_H_
 #define PHYSPRING_TRAINER_MOTION_FRAME_WALK_H_
 

@@ -9,8 +9,8 @@
 namespace physpring {
 
 struct LiftedLoss {
-  double loss = 0;          // sum over the frames
-  SystemGradient gradient;  // of it
+  double loss = 0;          // the sum over the frames
+  SystemGradient gradient;  // the gradient of that sum
 };
 
 // The training loss (loss.h) of the lifted particles in the fitted frames of all episodes, and its

@@ -15,8 +15,8 @@ namespace {
 // Sub-step as a part of the largest stable one, at most, where the number of sub-steps is given.
 constexpr double kLargestSafety = 0.95;
 
-// What a rollout of the level's nodes, and, where there is one, an observer of it need of the
-// recording.
+// What a rollout of the level's nodes needs of the recording, and an observer of it, where there is
+// one.
 Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool observed) {
   Recording carried;
   carried.name = recording.name;
@@ -30,7 +30,7 @@ Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool
   carried.start << nodes, recording.start.rightCols(controllers);
   carried.velocity = AverageOverMembers(twin, level, recording.velocity);
   if (!observed) return carried;
-  // measured where all of a node's members are
+  // a node is measured where all of its members are
   for (const Points& measured : recording.points) {
     Points all = Points::Constant(3, particles, std::numeric_limits<double>::quiet_NaN());
     all.leftCols(measured.cols()) = measured;

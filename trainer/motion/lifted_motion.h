@@ -23,13 +23,14 @@ class LiftedMotion {
   struct Options {
     RolloutOptions rollout;       // substeps: 0 = from the stability bound
     double safety = kStepSafety;  // sub-step as a part of the largest stable one
-    int most_substeps = 2000;     // a frame; a stiffer system cannot be rolled out
+    int most_substeps = 2000;     // sub-steps a frame; a stiffer system cannot be rolled out
     double least_rate = 0;        // sub-steps a second, at least ...
-    double most_rate = std::numeric_limits<double>::infinity();  // ... and as most_substeps
+    // ... and at most; a stiffer system cannot be rolled out.
+    double most_rate = std::numeric_limits<double>::infinity();
     int threads = 1;
   };
 
-  // Of level 0, whose nodes are the particles. The recordings must outlive this.
+  // The motion of level 0, whose nodes are the particles. The recordings must outlive this.
   LiftedMotion(std::vector<Episode> episodes, const Options& options);
 
   // `level` needs its topology, masses and reference positions; parameters come with each call. The
@@ -39,9 +40,9 @@ class LiftedMotion {
   // The motion of one episode.
   struct Motion {
     std::unique_ptr<Rollout> rollout;  // null where there is nothing to predict
-    std::vector<Points> lifted;        // of each frame; empty at level 0
+    std::vector<Points> lifted;        // the particles in each frame; empty at level 0
 
-    const std::vector<Points>& particles() const {  // 3 x particles, m, of each frame
+    const std::vector<Points>& particles() const {  // 3 x particles, m, for each frame
       return lifted.empty() && rollout ? rollout->positions() : lifted;
     }
   };
@@ -50,17 +51,17 @@ class LiftedMotion {
   const Episode& episode(int e) const { return episodes_[static_cast<std::size_t>(e)]; }
   int threads() const { return options_.threads; }
 
-  using Substeps = std::vector<int>;  // a frame, of each episode
+  using Substeps = std::vector<int>;  // sub-steps a frame, one number for each episode
 
-  // As many as the system needs; none if that is too many.
+  // As many sub-steps as the system needs; empty if that is too many.
   Substeps SubstepsOf(const SpringMassSystem& system) const;
-  // Whether the system is stable with these, and needs no more than may be.
+  // Whether the system is stable with these sub-steps, and needs no more than the options allow.
   bool AreEnough(const Substeps& substeps, const SpringMassSystem& system) const;
 
-  // Nothing where the rollout diverges.
+  // The motion of episode `e`; nothing where the rollout diverges.
   std::optional<Motion> RunOne(int e, const SpringMassSystem& system,
                                const Substeps& substeps) const;
-  // Of all episodes. Nothing where a rollout diverges or there are no `substeps`.
+  // The motions of all episodes; nothing where a rollout diverges or there are no `substeps`.
   std::optional<std::vector<Motion>> Run(const SpringMassSystem& system,
                                          const Substeps& substeps) const;
 
@@ -79,7 +80,7 @@ class LiftedMotion {
 
   std::vector<Episode> episodes_;  // as measured
   Options options_;
-  // of a coarser level:
+  // what only a coarser level has:
   std::vector<Recording> carried_;  // the start and the controllers, for the level's nodes
   std::vector<Lift> lifts_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fitting a system to recordings as a least-squares problem: the residuals are the distances, along
-// x, y and z, of predicted from measured particles, seen ones of the fitted frames only [m].
+// x, y and z, of predicted from measured particles [m]. Only particles that are seen in fitted
+// frames count.
 #ifndef PHYSPRING_TRAINER_MOTION_MOTION_PROBLEM_H_
 #define PHYSPRING_TRAINER_MOTION_MOTION_PROBLEM_H_
 
@@ -30,9 +31,9 @@ class MotionProblem : public LeastSquares {
     bool keep_substeps = false;
   };
 
-  // Of level 0.
+  // The problem of fitting level 0.
   MotionProblem(SystemMap map, std::vector<Episode> episodes, const Options& options);
-  // `difference` as in Options.
+  // The problem of fitting the level of `motion`. `difference` is as in Options.
   MotionProblem(SystemMap map, LiftedMotion motion, double difference);
 
   SpringMassSystem SystemAt(const Eigen::VectorXd& x) const { return map_.Apply(x); }
@@ -41,7 +42,7 @@ class MotionProblem : public LeastSquares {
   // Keeps the sub-steps that x needs; false if that is too many.
   bool FixSubsteps(const Eigen::VectorXd& x);
 
-  // Nothing where a motion diverges or would need too many sub-steps.
+  // Both give nothing where a motion diverges or would need too many sub-steps.
   std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) override;
   std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) override;
   Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) override;
@@ -60,8 +61,8 @@ class MotionProblem : public LeastSquares {
   LiftedMotion motion_;
   double difference_;
   bool keep_substeps_ = false;
-  std::vector<std::size_t> offset_ = {
-      0};  // of each episode's residuals; the last one: their number
+  // Where each episode's residuals begin; the last one is their number.
+  std::vector<std::size_t> offset_ = {0};
   LiftedMotion::Substeps substeps_;
   // the point of linearisation
   Eigen::VectorXd x_, r_;

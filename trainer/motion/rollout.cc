@@ -110,11 +110,11 @@ class RolloutIn : public Rollout {
   double growth_limit_;
   std::launch recording_ahead_;
   const std::vector<Points>* kicks_;
-  double delay_;             // of the controllers, s
+  double delay_;             // how late the controllers are, s
   SystemGradient gradient_;  // zero, of the right shapes
   Simulator<Real> simulator_;
-  std::array<typename Simulator<Real>::Workspace, 2> workspaces_;  // of even and odd frames
-  std::vector<NodeStates<Real>> states_;                           // at each frame
+  std::array<typename Simulator<Real>::Workspace, 2> workspaces_;  // for even and for odd frames
+  std::vector<NodeStates<Real>> states_;                           // the state at each frame
 };
 
 }  // namespace

@@ -20,10 +20,10 @@ namespace physpring {
 struct RolloutOptions {
   bool single_precision = false;
   bool controller_velocity = true;
-  int substeps = 0;  // a frame, >= 1
+  int substeps = 0;  // sub-steps a frame, >= 1
   double growth_limit = 1e3;
   double observer_gain = 0;  // observer.h; 0: none
-  int threads = 1;           // at most; the result does not depend on it
+  int threads = 1;           // at most so many; the result does not depend on it
   // Added to the velocities at frames 0, 1, ... (after an observer's correction), 3 x nodes, m/s:
   // as many as there are steps from frame to frame. They must outlive the rollout.
   const std::vector<Points>* kicks = nullptr;
@@ -34,7 +34,7 @@ constexpr double kFarAway = 1e3;  // a body that moved this far has diverged, m
 struct RolloutAdjoint {
   SystemGradient gradient;
   Points velocity_bar;            // d loss / d initial velocity, 3 x nodes
-  std::vector<Points> kicks_bar;  // d loss / d velocities at frames 0, 1, ...: of kicks there
+  std::vector<Points> kicks_bar;  // d loss / d velocities, or kicks, at frames 0, 1, ...
   int cuts = 0;
 };
 

@@ -45,7 +45,7 @@ double GeometricTrackError(const SpringMassSystem& system, const std::vector<Epi
                            FrameUse use, RolloutOptions options) {
   const bool automatic = options.substeps == 0;
   const StabilityBound bound = automatic ? ComputeStabilityBound(system) : StabilityBound{};
-  double sum = 0;  // of logarithms
+  double sum = 0;  // the sum of the errors' logarithms
   for (const Episode& episode : episodes) {
     if (automatic) {
       options.substeps = StableSubsteps(bound, 1 / episode.recording->fps, kStepSafety);

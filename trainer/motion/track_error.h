@@ -13,10 +13,10 @@ namespace physpring {
 // which nothing was seen are left out.
 using FrameTrack = std::vector<double>;
 
-// `particles`: predicted positions in each frame.
+// `particles` are the predicted positions in each frame.
 FrameTrack TrackOf(const Episode& episode, FrameUse use, const std::vector<Points>& particles);
 
-double Mean(const FrameTrack& track);  // NaN of none
+double Mean(const FrameTrack& track);  // NaN if it is empty
 
 // The mean over the frames; 0 where nothing was seen.
 double MeanTrackError(const Episode& episode, FrameUse use, const std::vector<Points>& particles);

@@ -8,7 +8,7 @@ namespace physpring {
 namespace {
 
 constexpr int kNetworkPatience = 5;  // epochs without gain on held-back frames
-constexpr double kShorterSteps = 4;  // times, after turning back
+constexpr double kShorterSteps = 4;  // steps are so many times shorter after turning back
 
 }  // namespace
 
@@ -43,7 +43,8 @@ bool CorrectionsFit::Judge(double score) {
 
 void CorrectionsFit::Update(const Eigen::VectorXd& gradient) {
   const int epoch = (iteration_ - 1) / UpdatesPerEpoch();
-  const double slower = rate_ * std::pow(options_.decay, epoch);  // than at first
+  // relative to the options' rate
+  const double slower = rate_ * std::pow(options_.decay, epoch);
   const auto rates = [&](double rate) {
     return Eigen::VectorXd::Constant(gradient.size(), slower * rate);
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The learning of a coarse level's corrections by Adam: epochs of updates of the network's weights,
-// each followed by updates of the contact's coefficients alone (the paper's K_model and K_col).
-// What predicts held-back frames best counts. Whoever uses it computes scores and gradients:
+// each followed by updates of the contact's coefficients alone (the paper's K_model and K_col). The
+// values that predict held-back frames best count. Whoever uses it computes scores and gradients:
 //   while (fit.Judge(score of fit.weights(), fit.contact())) fit.Update(gradient);
 #ifndef PHYSPRING_TRAINER_NETWORK_CORRECTIONS_FIT_H_
 #define PHYSPRING_TRAINER_NETWORK_CORRECTIONS_FIT_H_
@@ -15,7 +15,7 @@ namespace physpring {
 
 class CorrectionsFit {
  public:
-  // From these weights and an unchanged contact. `contact`: whether there is one.
+  // Starts from these weights and an unchanged contact. `contact` says whether there is one.
   CorrectionsFit(const TrainOptions::Network& options, bool contact,
                  const Eigen::VectorXd& weights);
 
@@ -26,14 +26,14 @@ class CorrectionsFit {
   const Eigen::VectorXd& best_weights() const { return best_weights_; }
   const Eigen::VectorXd& best_contact() const { return best_contact_; }
 
-  // With the track error on held-back frames of what is tried, m. False at the end: all epochs are
-  // done, or several brought nothing; then the best is what is tried.
+  // `score` is the track error on held-back frames of what is tried, m. Returns false at the end:
+  // all epochs are done, or several brought nothing. Then the best is what is tried.
   bool Judge(double score);
 
-  // Whose turn the update is that follows: of the weights, or else of the contact.
+  // Whether the next update is one of the weights; else it is one of the contact.
   bool is_turn_of_weights() const { return (iteration_ - 1) % UpdatesPerEpoch() < updates_.model; }
-  // d loss / d weights or contact; TurnBack where there is no loss: to the best, on in shorter
-  // steps.
+  // Update takes d loss / d weights, or d loss / d contact. TurnBack takes its place where there is
+  // no loss: it goes back to the best, and from there on in shorter steps.
   void Update(const Eigen::VectorXd& gradient);
   void TurnBack();
 
@@ -48,7 +48,7 @@ class CorrectionsFit {
 
  private:
   struct Updates {
-    int model, contact;  // in an epoch
+    int model, contact;  // how many make an epoch
   };
 
   int UpdatesPerEpoch() const { return updates_.model + updates_.contact; }
@@ -59,7 +59,7 @@ class CorrectionsFit {
   Adam weights_adam_, contact_adam_;
   double best_score_;  // m
   int iteration_ = 0, best_iteration_ = 0;
-  double rate_ = 1;  // of learning, relative to the options'
+  double rate_ = 1;  // the learning rate, relative to the options'
 };
 
 }  // namespace physpring

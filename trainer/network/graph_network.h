@@ -30,8 +30,8 @@ class GraphNetwork {
  public:
   GraphNetwork(int latent, std::uint64_t seed);
 
-  // What the network sees: the levels of a twin so far, from level 0 on, as systems, and how each
-  // is projected from the one below (empty at level 0).
+  // A level as the network sees it: its system, and how it is projected from the level below (empty
+  // at level 0).
   struct Level {
     const SpringMassSystem* system;
     Assignment assignment;
@@ -45,12 +45,12 @@ class GraphNetwork {
   struct Encoded {
     Tape::Node nodes, springs;  // (nodes + controllers) x latent, springs x latent
   };
-  // Features of the last level.
+  // Features of the last of `levels`, which are those of a twin so far, from level 0 on.
   Encoded Encode(const std::vector<Level>& levels, Tape* tape) const;
 
   struct Corrections {
-    Tape::Node springs;  // springs x 2: of log-stiffness, log-dashpot
-    Tape::Node system;   // 1 x 3: of log-drag, of the logits of restitution and friction
+    Tape::Node springs;  // springs x 2: those of log-stiffness and log-dashpot
+    Tape::Node system;   // 1 x 3: those of log-drag and of the logits of restitution and friction
   };
   Corrections Decode(const SpringMassSystem& system, const Encoded& encoded, Tape* tape) const;
 

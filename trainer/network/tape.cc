@@ -7,8 +7,8 @@
 namespace physpring {
 namespace {
 
-constexpr double kVarianceFloor = 1e-5;   // of a row that is normalised
-constexpr double kDistanceFloor = 1e-12;  // squared; keeps the derivative at 0 finite
+constexpr double kVarianceFloor = 1e-5;   // added to the variance of a row that is normalised
+constexpr double kDistanceFloor = 1e-12;  // added to the square; keeps the derivative at 0 finite
 
 void AddTo(Features* sum, const Features& term) {
   if (sum->size() == 0) {

@@ -55,7 +55,7 @@ class Tape {
 
  private:
   using Bars = std::vector<Features>;
-  // Adds to the bars of the operands, from that of the result.
+  // Adds to the bars of the operands what follows from the bar of the result.
   using AddAdjoint = std::function<void(const Features& bar, Bars* bars, Eigen::VectorXd* weights)>;
 
   Node Record(Features value, AddAdjoint add_adjoint);

@@ -11,7 +11,7 @@ namespace physpring {
 struct Adam {
   double beta1 = 0.9, beta2 = 0.99, epsilon = 1e-12;
   int steps = 0;
-  Eigen::VectorXd mean, mean_square;  // of the gradient
+  Eigen::VectorXd mean, mean_square;  // running means of the gradient and its square
 
   explicit Adam(Eigen::Index size)
       : mean(Eigen::VectorXd::Zero(size)), mean_square(Eigen::VectorXd::Zero(size)) {}

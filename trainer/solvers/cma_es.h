@@ -16,15 +16,15 @@
 
 namespace physpring {
 
-// All that the next generation depends on, besides seed and population. n variables.
+// All that the next generation depends on, besides seed and population. There are n variables.
 struct CmaEsState {
-  int generation = 0;          // that were told
+  int generation = 0;          // how many were told
   double step_size = 0;        // sigma
   Eigen::VectorXd mean;        // (n), before the fold
   Eigen::MatrixXd covariance;  // C (n, n)
   Eigen::VectorXd step_path;   // p_sigma (n)
   Eigen::VectorXd path;        // p_c (n)
-  Eigen::VectorXd best;        // (n) in the cube: of all that were told; at first the start
+  Eigen::VectorXd best;        // (n) in the cube: the best that was told; at first the start
   double best_objective = std::numeric_limits<double>::infinity();
 
   template <class Visitor>
@@ -44,11 +44,11 @@ class CmaEs {
   // The candidates of this generation, in the cube; the same at each call until Tell.
   std::vector<Eigen::VectorXd> Ask() const;
 
-  // Ends the generation: the objective of each candidate of Ask, in its order. Values that are no
-  // numbers are worst.
+  // Ends the generation. `objective` has a value for each candidate of Ask, in its order. Values
+  // that are no numbers are worst.
   void Tell(const std::vector<double>& objective);
 
-  // The start's objective, for `best`: only what is better replaces it.
+  // Gives `best` the start's objective: only what is better replaces the start.
   void TellStart(double objective) { state_.best_objective = objective; }
 
   const CmaEsState& state() const { return state_; }
@@ -60,11 +60,11 @@ class CmaEs {
   }
 
  private:
-  std::vector<Eigen::VectorXd> Sample() const;  // before the fold
+  std::vector<Eigen::VectorXd> Sample() const;  // the candidates before the fold
 
   std::uint64_t seed_;
   int population_;
-  Eigen::VectorXd weight_;  // of the better half, best first; sum 1
+  Eigen::VectorXd weight_;  // weights of the better half, best first; their sum is 1
   double mu_eff_;           // 1 / sum w^2
   CmaEsState state_;
 };

@@ -51,7 +51,7 @@ GaussNewtonState GaussNewtonStep(LeastSquares* problem, const GaussNewtonState& 
   }
   step *= std::min(1.0, options.longest_step / std::max(1e-300, step.cwiseAbs().maxCoeff()));
 
-  // shorter and shorter along the step
+  // tries shorter and shorter parts of the step
   for (double length : {1.0, 0.4, 0.1, 0.02}) {
     const Eigen::VectorXd x = state.x + length * step;
     const auto trial = problem->Residuals(x);

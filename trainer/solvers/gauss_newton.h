@@ -27,14 +27,14 @@ class LeastSquares {
 struct GaussNewtonState {
   Eigen::VectorXd x;
   double damping = 1e-2;   // relative to `scale`
-  double mean_square = 0;  // of the residuals at x
+  double mean_square = 0;  // the residuals' mean square at x
   bool converged = false;
 };
 
 struct GaussNewtonOptions {
   int conjugate_gradient_steps = 20;
   double longest_step = 0.7;  // no entry of x moves further in one step
-  Eigen::VectorXd precision;  // P, of the prior
+  Eigen::VectorXd precision;  // P, the prior's
   Eigen::VectorXd scale;      // D: how strongly each entry acts, relative to the others
 };
 

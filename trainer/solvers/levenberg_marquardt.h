@@ -13,7 +13,7 @@ namespace physpring {
 
 struct LevenbergMarquardtOptions {
   double difference = 1e-3;  // step of the forward differences
-  double precision = 0.25;   // of the prior: 1 / (standard deviation of an entry)^2
+  double precision = 0.25;   // the prior's: 1 / (standard deviation of an entry)^2
   double longest_step = 1;   // no entry of x moves further in one step
   double tolerance = 2e-3;   // converged when a step lowers the objective by less than this share
   int threads = 1;
@@ -22,7 +22,7 @@ struct LevenbergMarquardtOptions {
 struct LevenbergMarquardtState {
   Eigen::VectorXd x;
   double damping = 1e-2;
-  double mean_square = 0;  // of the residuals at x
+  double mean_square = 0;  // the residuals' mean square at x
   bool converged = false;
 };
 
