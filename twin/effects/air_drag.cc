@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drag of the air, quadratic in the velocity against a uniform wind w: a node of mass m_i in a body
 // of mass M feels F_i = -C m_i / M |v_i - w| (v_i - w). The linear drag of the system is another.
+#include <fmt/format.h>
+
 #include "twin/effects/effect.h"
 
 namespace physpring {
@@ -51,6 +53,16 @@ class AirDragForce : public EffectForce {
 class AirDrag : public Effect {
  public:
   std::string name() const override { return "air_drag"; }
+  EffectPicture Picture(const Eigen::VectorXd& values, const Setting&) const override {
+    constexpr double kCalm = 0.3;  // m/s
+    EffectPicture picture;
+    const Eigen::Vector3d wind = values.tail<3>();
+    picture.lacks = "the drag of the air";
+    if (wind.norm() < kCalm) return picture;
+    picture.lacks += fmt::format(" and a wind of about {:.2g} m/s", wind.norm());
+    picture.arrows = {{"wind", "m/s", wind}};
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"drag_kg_per_m", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"wind_x_m_per_s", -30, 30, 1},

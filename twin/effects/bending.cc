@@ -24,6 +24,13 @@ class BendingMoment : public BendMoment {
 class Bending : public Effect {
  public:
   std::string name() const override { return "bending"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a resistance to bending";
+    picture.amount = 0;
+    picture.where = "wherever the body bends";
+    return picture;
+  }
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"flexural_rigidity_n_m2", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic}};

@@ -28,6 +28,13 @@ class BendingDampingMoment : public BendMoment {
 class BendingDamping : public Effect {
  public:
   std::string name() const override { return "bending_damping"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a damping of bending";
+    picture.amount = 0;
+    picture.where = "wherever the body bends";
+    return picture;
+  }
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"damping_n_m2_s", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic}};

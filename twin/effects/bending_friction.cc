@@ -57,6 +57,13 @@ class BendingFrictionMoment : public BendMoment {
 class BendingFriction : public Effect {
  public:
   std::string name() const override { return "bending_friction"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a friction in bending";
+    picture.amount = 0;
+    picture.where = "wherever the body bends";
+    return picture;
+  }
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     return {{"moment_n_m", 0, 10, 1, 1, EffectParameter::Spacing::kLogarithmic},

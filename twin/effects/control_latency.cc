@@ -9,6 +9,13 @@ namespace {
 class ControlLatency : public Effect {
  public:
   std::string name() const override { return "control_latency"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a delay of the hands";
+    picture.amount = 0;
+    picture.where = "at the hands";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override { return {{"latency_s", 0, 2, 0.02}}; }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Constant(1, 0.01), Eigen::VectorXd::Constant(1, 0.1)};

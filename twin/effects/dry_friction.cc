@@ -63,6 +63,12 @@ class DryFrictionLaw {
 class DryFriction : public Effect {
  public:
   std::string name() const override { return "dry_friction"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "dry friction inside the material";
+    picture.where = "in all springs";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     using Spacing = EffectParameter::Spacing;
     return {{"slip_strain", 0, 1, 1, 1, Spacing::kLogarithmic},

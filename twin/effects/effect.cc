@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "twin/effects/effect.h"
 
+#include <algorithm>
+
 #include "twin/effects/bend_effect.h"
 
 namespace physpring {
@@ -32,6 +34,13 @@ Eigen::VectorXd Effect::StartOfRod(const RodTraits&) const { return {}; }
 double Effect::FlexuralRigidity(const Eigen::VectorXd&) const { return 0; }
 
 void Effect::Stiffen(const Eigen::VectorXd&, SpringMassSystem*) const {}
+
+EffectPicture Effect::Picture(const Eigen::VectorXd&, const Setting&) const {
+  EffectPicture picture;
+  picture.lacks = name();
+  std::replace(picture.lacks.begin(), picture.lacks.end(), '_', ' ');
+  return picture;
+}
 
 int Effect::value_count() const {
   int count = 0;

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "twin/effects/effect_mjcf.h"
+#include "twin/effects/effect_picture.h"
 #include "twin/effects/spring_tension.h"
 #include "twin/spring_mass_system.h"
 #include "twin/system_gradient.h"
@@ -145,6 +146,10 @@ class Effect {
 
   // What stands for the effect in MuJoCo. The changed setting is exported by itself.
   virtual EffectMjcf Mjcf(const Eigen::VectorXd& values, const SpringMassSystem& system) const = 0;
+
+  // What a page says and shows of it; `before`: the setting that it changes. By default its name
+  // alone.
+  virtual EffectPicture Picture(const Eigen::VectorXd& values, const Setting& before) const;
 
   int value_count() const;
 };

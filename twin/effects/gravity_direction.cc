@@ -3,8 +3,11 @@
 // vector r = tilt_x p + tilt_y q about the two world axes that are most across g; for gravity along
 // z these are x and y.
 //   g' = c g + s r x g + k r (r . g),   c = cos a, s = sin a / a, k = (1 - c) / a^2, a = |r|
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 #include "twin/effects/effect.h"
 
@@ -39,6 +42,16 @@ struct Rodrigues {
 class GravityDirection : public Effect {
  public:
   std::string name() const override { return "gravity_direction"; }
+  EffectPicture Picture(const Eigen::VectorXd& values, const Setting& before) const override {
+    EffectPicture picture;
+    picture.lacks =
+        fmt::format("a tilt of gravity by about {:.2g}°", values.norm() * 180 / std::numbers::pi);
+    Setting after = before;
+    Change(values, &after);
+    picture.arrows = {{"gravity as declared", "m/s^2", before.gravity, true},
+                      {"gravity as found", "m/s^2", after.gravity}};
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"tilt_x_rad", -1.5, 1.5, 0.1}, {"tilt_y_rad", -1.5, 1.5, 0.1}};
   }

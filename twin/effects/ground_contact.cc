@@ -2,6 +2,7 @@
 // Contact with ground and geoms other than declared: changes of friction and restitution, kept
 // within their ranges.
 #include <algorithm>
+#include <cmath>
 
 #include "twin/effects/effect.h"
 
@@ -11,6 +12,15 @@ namespace {
 class GroundContact : public Effect {
  public:
   std::string name() const override { return "ground_contact"; }
+  EffectPicture Picture(const Eigen::VectorXd& values, const Setting&) const override {
+    EffectPicture picture;
+    const bool friction = std::abs(values[0]) >= std::abs(values[1]);
+    picture.lacks = friction ? "a change of the friction on the ground"
+                             : "a change of how it bounces off the ground";
+    picture.amount = friction ? 0 : 1;
+    picture.where = "where the body touches the ground";
+    return picture;
+  }
   bool MayBeMissing(const BodyTraits& body) const override { return body.on_ground; }
   std::vector<EffectParameter> parameters() const override {
     return {{"friction_change", -2, 2, 0.2}, {"restitution_change", -1, 1, 0.2}};

@@ -19,6 +19,18 @@ Eigen::VectorXd Field(const SpringMassSystem& system, const Eigen::VectorXd& val
 class MassDistribution : public Effect {
  public:
   std::string name() const override { return "mass_distribution"; }
+  EffectPicture Picture(const Eigen::VectorXd& values, const Setting& before) const override {
+    constexpr double kNone = 0.01;  // of the body's mass
+    EffectPicture picture;
+    picture.lacks = "another spread of its mass along the body";
+    if (values[0] > kNone * before.system.mass.sum()) {
+      picture.lacks = "an extra mass";
+      picture.amount = 0;
+      picture.places = {{values.segment<3>(1), {}}};
+    }
+    picture.profiles = {{"change of density", 4, kMassKnots}};
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"mass_kg", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"place_x_m", -100, 100, 0.05},

@@ -61,6 +61,13 @@ class RestBendMoment : public BendMoment {
 class RestBend : public Effect {
  public:
   std::string name() const override { return "rest_bend"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a shape at rest that is bent";
+    picture.profiles = {{"moment upwards", 0, kBendKnots},
+                        {"moment sideways", kBendKnots, kBendKnots}};
+    return picture;
+  }
   bool bends() const override { return true; }
   std::vector<EffectParameter> parameters() const override {
     using Spacing = EffectParameter::Spacing;

@@ -28,6 +28,12 @@ Eigen::MatrixXd SpringFields(const SpringMassSystem& system) {
 class RestLength : public Effect {
  public:
   std::string name() const override { return "rest_length"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a change of its length at rest";
+    picture.profiles = {{"strain at rest", 0, kLengthKnots}};
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"strain", -0.8, 4, 0.03, kLengthKnots},
             {"strain_gradient_x_per_m", -100, 100, 1},

@@ -41,6 +41,12 @@ class StiffeningLaw {
 class Stiffening : public Effect {
  public:
   std::string name() const override { return "stiffening"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "springs that stiffen as they are stretched";
+    picture.where = "in all springs";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"cubic_stiffness_ratio", 0, 1e4, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }

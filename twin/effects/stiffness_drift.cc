@@ -40,6 +40,13 @@ class StiffnessDriftLaw {
 class StiffnessDrift : public Effect {
  public:
   std::string name() const override { return "stiffness_drift"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a stiffness that changes with time, at a rate";
+    picture.amount = 0;
+    picture.where = "in all springs";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"relative_rate_per_s", -2, 2, 0.1}};
   }

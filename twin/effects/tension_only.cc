@@ -44,6 +44,13 @@ class TensionOnlyLaw {
 class TensionOnly : public Effect {
  public:
   std::string name() const override { return "tension_only"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "springs that go slack when they are pressed, with a share";
+    picture.amount = 0;
+    picture.where = "in all springs";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override { return {{"slack_share", 0, 1, 0.3}}; }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 0.8)};

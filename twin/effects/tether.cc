@@ -51,6 +51,13 @@ class TetherForce : public EffectForce {
 class Tether : public Effect {
  public:
   std::string name() const override { return "tether"; }
+  EffectPicture Picture(const Eigen::VectorXd& values, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a pull towards a fixed point, as of a spring";
+    picture.amount = 0;
+    picture.places = {{values.segment<3>(2), values.tail<3>()}};
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"stiffness_n_per_m", 0, 1e4, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"damping_n_s_per_m", 0, 100, 0.1},

@@ -125,6 +125,13 @@ class TwistForce : public EffectForce {
 class TwistEffect : public Effect {
  public:
   std::string name() const override { return "twist"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a resistance to twist";
+    picture.amount = 0;
+    picture.where = "along the whole body";
+    return picture;
+  }
   bool bends() const override { return true; }
   bool MayBeMissing(const BodyTraits& body) const override {
     return body.rod && Effect::MayBeMissing(body);

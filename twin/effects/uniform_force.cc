@@ -66,6 +66,12 @@ class UniformForceForce : public EffectForce {
 class UniformForce : public Effect {
  public:
   std::string name() const override { return "uniform_force"; }
+  EffectPicture Picture(const Eigen::VectorXd& values, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a force on the whole body that changes with time";
+    picture.courses = {{"force", 1, kForceKnots, values[0]}};
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"interval_s", 0, 100, 1, 1, EffectParameter::Spacing::kLogarithmic},
             {"force_x_n", -1e3, 1e3, 0.05, kForceKnots},

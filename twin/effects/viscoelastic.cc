@@ -55,6 +55,12 @@ class ViscoelasticLaw {
 class Viscoelastic : public Effect {
  public:
   std::string name() const override { return "viscoelastic"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "a material that relaxes under load";
+    picture.where = "in all springs";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     return {{"relaxing_share", 0, 0.95, 0.3},
             {"relaxation_time_s", 0, 20, 1, 1, EffectParameter::Spacing::kLogarithmic}};

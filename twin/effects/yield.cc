@@ -64,6 +64,12 @@ class YieldLaw {
 class Yield : public Effect {
  public:
   std::string name() const override { return "yield"; }
+  EffectPicture Picture(const Eigen::VectorXd&, const Setting&) const override {
+    EffectPicture picture;
+    picture.lacks = "springs that yield and stay bent";
+    picture.where = "in all springs";
+    return picture;
+  }
   std::vector<EffectParameter> parameters() const override {
     using Spacing = EffectParameter::Spacing;
     return {{"yield_stretch_m", 0, 1, 1, 1, Spacing::kLogarithmic},
