@@ -20,8 +20,8 @@
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
+#include "report/diagnosis/page.h"
 #include "report/diagnosis_json.h"
-#include "report/diagnosis_page.h"
 #include "report/diagnosis_text.h"
 #include "trainer/data/fit_data.h"
 #include "trainer/diagnosis/diagnosis.h"
@@ -169,8 +169,7 @@ void Run(const DiagnoseArguments& arguments) {
   WriteFileAtomically(outputs.report, json);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, json);
   const std::string name = std::filesystem::path(arguments.twin).filename().string();
-  WriteFileAtomically(outputs.page,
-                      FormatDiagnosisPage(diagnosis, chosen.fit[0], "Diagnosis of " + name));
+  WriteFileAtomically(outputs.page, FormatDiagnosisPage(diagnosis, chosen, "Diagnosis of " + name));
   WriteTwin(diagnosis.twin, outputs.twin);
   checkpoint.Finish();
   WarnOfMass(twin, chosen);

@@ -85,24 +85,34 @@ std::string EncodeSprings(const SpringMassSystem& system) {
   return Base64(ends);
 }
 
-Json ToJson(const EvaluatedRecording& evaluated, const Twin& twin, const View& view, int stride) {
-  const Recording& recording = evaluated.recording;
+Json ToJson(const FilmLayer& layer, const Quantiser& quantiser, int stride) {
+  Json json = {{"nodes", layer.system->node_count()},
+               {"springs", EncodeSprings(*layer.system)},
+               {"positions", quantiser.Encode(*layer.nodes, stride)}};
+  if (layer.points) json["points"] = quantiser.Encode(*layer.points, stride);
+  return json;
+}
+
+Json ToJson(const FilmMark& mark, const View& view, const Quantiser& quantiser) {
+  Json json = {{"layer", mark.layer}, {"node", mark.node}};
+  if (mark.anchor) json["anchor"] = quantiser.EncodeUpright(view.ToUpright(*mark.anchor));
+  return json;
+}
+
+Json ToJson(const FilmRecording& film, const View& view, int stride) {
+  const Recording& recording = *film.recording;
   const Quantiser quantiser(view);
   const Eigen::Vector3d extent = view.high() - view.low();
-  Json levels = Json::array();
-  for (const LevelResult& level : evaluated.result.levels) {
-    Json json = {{"nodes", level.nodes},
-                 {"springs", EncodeSprings(twin.levels[level.level].system)},
-                 {"positions", quantiser.Encode(level.positions, stride)}};
-    // at level 0 the points are the first nodes
-    if (level.level > 0) json["points"] = quantiser.Encode(level.points, stride);
-    levels.push_back(json);
-  }
+  Json layers = Json::array(), spans = Json::array(), marks = Json::array();
+  for (const FilmLayer& layer : film.layers) layers.push_back(ToJson(layer, quantiser, stride));
+  for (const FilmSpan& span : film.spans) spans.push_back({span.first, span.name, span.fitted});
+  for (const FilmMark& mark : film.marks) marks.push_back(ToJson(mark, view, quantiser));
   return {{"name", recording.name},
           {"fps", recording.fps},
           {"frames", recording.frame_count()},
           {"stride", stride},
-          {"split", evaluated.result.first_predicted},
+          {"begin", film.begin},
+          {"spans", spans},
           {"elevation", view.elevation()},
           {"corner", quantiser.Corner()},
           {"step", quantiser.step()},
@@ -111,26 +121,27 @@ Json ToJson(const EvaluatedRecording& evaluated, const Twin& twin, const View& v
           {"measured", quantiser.Encode(recording.points, stride)},
           {"controllers", quantiser.Encode(recording.controllers, stride)},
           {"ground", quantiser.EncodeUpright(GroundGrid(recording, view))},
-          {"levels", levels}};
+          {"layers", layers},
+          {"marks", marks}};
 }
 
-std::size_t NumbersOf(const EvaluatedRecording& evaluated) {
-  Eigen::Index columns = evaluated.recording.point_count();
-  for (const LevelResult& level : evaluated.result.levels) {
-    columns += level.nodes + evaluated.recording.point_count();
-  }
-  return evaluated.recording.points.size() * static_cast<std::size_t>(3 * columns);
+std::size_t NumbersOf(const FilmRecording& film) {
+  const int points = film.recording->point_count();
+  Eigen::Index columns = points;
+  for (const FilmLayer& layer : film.layers) columns += layer.system->node_count() + points;
+  return film.recording->points.size() * static_cast<std::size_t>(3 * columns);
 }
 
 }  // namespace
 
-std::string FormatFilmData(const Evaluation& evaluation, const std::vector<View>& views) {
+std::string FormatFilmData(const std::vector<FilmRecording>& recordings,
+                           const std::vector<View>& views) {
   std::size_t numbers = 0;
-  for (std::size_t i = 0; i < views.size(); ++i) numbers += NumbersOf(evaluation.recordings[i]);
+  for (const FilmRecording& film : recordings) numbers += NumbersOf(film);
   const int stride = static_cast<int>(numbers / kMostNumbers) + 1;
   Json json = Json::array();
   for (std::size_t i = 0; i < views.size(); ++i) {
-    json.push_back(ToJson(evaluation.recordings[i], evaluation.twin, views[i], stride));
+    json.push_back(ToJson(recordings[i], views[i], stride));
   }
   // "</script>" in a name would end the script
   std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);

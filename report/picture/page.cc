@@ -9,14 +9,13 @@
 #include "report/picture/error_plot.h"
 #include "report/picture/escape.h"
 #include "report/picture/film_data.h"
+#include "report/picture/film_section.h"
 #include "report/picture/overlay.h"
 #include "report/picture/view.h"
 
 namespace physpring {
 
-// page.css and film.js, put into the program by the build
-extern const char kPageStyle[];
-extern const char kFilmScript[];
+extern const char kPageStyle[];  // page.css, put into the program by the build
 
 namespace {
 
@@ -111,34 +110,35 @@ std::string FormatLead(const Evaluation& evaluation) {
       track(rows.back()));
 }
 
-std::string FormatControls(const Evaluation& evaluation, std::size_t drawn) {
-  std::string recordings, levels;
+FilmSection FilmOf(const Evaluation& evaluation, std::size_t drawn) {
+  FilmSection film;
   for (std::size_t i = 0; i < drawn; ++i) {
-    recordings += fmt::format("<option value=\"{}\">{}</option>", i,
-                              Escape(evaluation.recordings[i].recording.name));
+    film.recordings.push_back(evaluation.recordings[i].recording.name);
   }
   for (std::size_t i = 0; i < evaluation.twin.levels.size(); ++i) {
-    levels += fmt::format("<option value=\"{0}\">level {0}</option>", i);
+    film.layers.push_back(fmt::format("level {}", i));
   }
-  return fmt::format(
-      "<div class=\"controls\"><button id=\"play\" type=\"button\">Play</button>"
-      "<div class=\"track\"><div id=\"fit-part\"></div>"
-      "<input id=\"frame\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"Frame\"></div>"
-      "<output id=\"time\"></output></div>\n"
-      "<div class=\"controls\">"
-      "<select id=\"recording\" aria-label=\"Recording\">{}</select>"
-      "<select id=\"level\" aria-label=\"Level\">{}</select>"
-      "<select id=\"speed\" aria-label=\"Speed\"><option value=\"1\">real time</option>"
-      "<option value=\"0.25\">1/4 speed</option><option value=\"0.0625\">1/16 speed</option>"
-      "</select>"
-      "<label><input id=\"show-springs\" type=\"checkbox\" checked>"
-      "<i class=\"key springs\"></i>predicted</label>"
-      "<label><input id=\"show-measured\" type=\"checkbox\" checked>"
-      "<i class=\"key dots\"></i>measured</label>"
-      "<label><input id=\"show-errors\" type=\"checkbox\" checked>"
-      "<i class=\"key errors\"></i>difference</label>"
-      "<span class=\"legend\"><i class=\"key held\"></i>controllers</span></div>\n",
-      recordings, levels);
+  return film;
+}
+
+// The film begins where the prediction begins, else in the middle.
+std::vector<FilmRecording> FilmRecordings(const Evaluation& evaluation, std::size_t drawn) {
+  std::vector<FilmRecording> films;
+  for (std::size_t i = 0; i < drawn; ++i) {
+    const EvaluatedRecording& evaluated = evaluation.recordings[i];
+    const int frames = evaluated.recording.frame_count(), split = evaluated.result.first_predicted;
+    FilmRecording film{&evaluated.recording, {}, {}, frames / 2, {}};
+    for (const LevelResult& level : evaluated.result.levels) {
+      // at level 0 the points are the first nodes
+      film.layers.push_back({&evaluation.twin.levels[level.level].system, &level.positions,
+                             level.level > 0 ? &level.points : nullptr});
+    }
+    film.spans.push_back({0, "fit", split > 1});
+    film.spans.push_back({split, "prediction", false});
+    if (split > 1 && split < frames) film.begin = split;
+    films.push_back(film);
+  }
+  return films;
 }
 
 std::string FormatRecording(const EvaluatedRecording& evaluated, std::size_t number,
@@ -190,20 +190,16 @@ std::string FormatPage(const Evaluation& evaluation) {
       "<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0} <small>{2}</small></h1>\n",
       title, kPageStyle, FormatSubject(evaluation));
   html += FormatLead(evaluation);
-  html +=
-      "<section class=\"film\"><canvas id=\"film\" aria-label=\"Film of the prediction over "
-      "the measured points; drag to turn\"></canvas>\n";
-  html += FormatControls(evaluation, drawn) + "</section>\n";
+  html += FormatFilmSection(FilmOf(evaluation, drawn));
   html += fmt::format("<section><h2>{}</h2>\n", several ? "Mean over the recordings" : "Errors");
   html += FormatTable(MeanRows(evaluation)) + "</section>\n";
   for (std::size_t i = 0; i < drawn; ++i) {
     html += FormatRecording(evaluation.recordings[i], i, evaluation.twin, views[i], several);
   }
   html += FormatNotes(evaluation);
-  html += "</main>\n<script type=\"application/json\" id=\"film-data\">" +
-          FormatFilmData(evaluation, views) + "</script>\n<script>\n" + kFilmScript +
-          "</script>\n</body>\n</html>\n";
-  return html;
+  return html + "</main>\n" +
+         FormatFilmScripts(FormatFilmData(FilmRecordings(evaluation, drawn), views)) +
+         "</body>\n</html>\n";
 }
 
 }  // namespace physpring

@@ -196,6 +196,14 @@ void TellResidual(const Fitting& fitting, const Findings& findings, double noise
   }
 }
 
+// The fits whose errors are told, and the frames that they are of.
+void KeepFits(const Twin& twin, const Findings& findings, std::size_t own,
+              const std::vector<SplitRecording>& splits, Diagnosis* result) {
+  result->fit_before = TwinWith(twin, findings.before, own, splits);
+  result->fit_after = TwinWith(twin, findings.accepted, own, splits);
+  for (const SplitRecording& split : splits) result->uses.push_back(split.use);
+}
+
 }  // namespace
 
 Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
@@ -224,6 +232,7 @@ Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
   }
   Tell(fitting, *findings, options.seed, known, &result);
   TellResidual(fitting, *findings, noise, &result);
+  KeepFits(twin, *findings, own.size(), splits, &result);
   std::optional<Verdict> last;
   if (held_out.empty() && !result.effects.empty()) {
     last = FitAllFrames(fitting, kLastShare, findings->accepted);

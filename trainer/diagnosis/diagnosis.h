@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "trainer/data/episode.h"
 #include "trainer/diagnosis/acceptance.h"
 #include "trainer/diagnosis/block_bootstrap.h"
 #include "trainer/diagnosis/effect_certainty.h"
@@ -82,6 +83,10 @@ struct Diagnosis {
   // All else but the values of `effects` is of the fit before that step.
   Twin twin;
   std::optional<double> all_frames;
+  // The fits that the errors before and after are of, as twins: to show their motion.
+  Twin fit_before, fit_after;
+  // How the frames of each recording were used: of those fitted, then of those that judged.
+  std::vector<std::vector<FrameUse>> uses;
 };
 
 // `held_out` may be empty: then the future frames of the recordings are held out, or blocks of
