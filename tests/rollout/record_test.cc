@@ -179,10 +179,12 @@ TEST_F(RecordSceneTest, WarnsOfGeomsThatARecordingDoesNotHold) {
   EXPECT_NE(recording.warnings[0].find("1 geom"), std::string::npos) << recording.warnings[0];
 }
 
-// The scenes that the demo uses: points, interior, controllers.
+// The scenes that the demo uses: points, interior, controllers; whether it hangs in the air, at
+// rest.
 struct Demo {
   const char* name;
   int points, interior, controllers;
+  bool hangs;
 };
 
 class DemoScene : public testing::TestWithParam<Demo> {};
@@ -194,14 +196,16 @@ TEST_P(DemoScene, IsRecorded) {
   EXPECT_EQ(recording.point_count(), demo.points);
   EXPECT_EQ(recording.interior_count(), demo.interior);
   EXPECT_EQ(recording.controller_count(), demo.controllers);
-  EXPECT_TRUE(recording.ground.has_value());
-  EXPECT_FALSE(recording.rest_given);
+  EXPECT_EQ(recording.ground.has_value(), !demo.hangs);
+  EXPECT_EQ(recording.rest_given, demo.hangs);
   EXPECT_TRUE(recording.warnings.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DemoScene,
-                         testing::Values(Demo{"rope", 108, 0, 4}, Demo{"cloth", 219, 0, 6},
-                                         Demo{"block", 164, 72, 4}),
+                         testing::Values(Demo{"rope", 108, 0, 4, false},
+                                         Demo{"cloth", 219, 0, 6, false},
+                                         Demo{"block", 164, 72, 4, false},
+                                         Demo{"cord", 20, 0, 1, true}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
