@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "trainer/network/weights.h"
-#include "trainer/reduction/galerkin.h"
+#include "trainer/projection/galerkin.h"
 #include "twin/simulator.h"
 #include "twin/spring_mass_system.h"
 
