@@ -29,7 +29,7 @@ void VisitHierarchyOptions(Options& options, Visitor& visit) {
   visit.Count("--network-updates", &network.updates, 1, 1000,
               "of the network in an epoch (K_model)");
   visit.Count("--contact-updates", &network.contact_updates, 0, 1000,
-              "of restitution and friction alone after each epoch (K_col)");
+              "of the ground's contact alone after each epoch (K_col)");
   visit.Count("--latent", &network.latent, 2, 1024, "features of a node in the network");
 }
 
