@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bench/rope.h"
-#include "trainer/reduction/baselines.h"
-#include "trainer/reduction/galerkin.h"
+#include "trainer/projection/galerkin.h"
+#include "trainer/reduction/kmeans.h"
 #include "twin/simulator.h"
 #include "twin/stability.h"
 

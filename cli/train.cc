@@ -23,6 +23,7 @@
 #include "cli/train_options.h"
 #include "cli/training.h"
 #include "trainer/data/fit_data.h"
+#include "trainer/reduction/registry.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/predict.h"
@@ -37,13 +38,21 @@ struct TrainArguments {
   ResumeOptions run;
 };
 
+// The reductions that learn features: "learned".
+std::string FeatureReductions() {
+  std::string names;
+  for (const auto& reduction : AllReductions()) {
+    if (reduction->LearnsFeatures()) names += (names.empty() ? "" : " or ") + reduction->name();
+  }
+  return names;
+}
+
 TrainOptions OptionsOf(const TrainArguments& arguments) {
   const bool two_stage = arguments.options.method == TrainOptions::Method::kTwoStage;
-  const bool learned = arguments.options.reduction == TrainOptions::Reduction::kLearned;
   TrainOptions options = arguments.options;
   if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
 
-  const auto expect = [](bool right, const char* flag, const char* what) {
+  const auto expect = [](bool right, const char* flag, const std::string& what) {
     if (!right) throw CLI::ValidationError(flag, what);
   };
   const bool counts = std::count(options.neighbours.begin(), options.neighbours.end(), 0) == 0;
@@ -56,10 +65,12 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
   const bool given = options.ratios != TrainOptions().ratios;
   expect(!given || options.ratios.size() + 1 == static_cast<std::size_t>(options.levels),
          "--ratios", "are of levels 1, 2, ...: --levels must be one more than there are");
-  expect(learned || options.levels > 1, "--reduction", "needs --levels 2 or more");
+  expect(options.reduction == TrainOptions().reduction || options.levels > 1, "--reduction",
+         "needs --levels 2 or more");
   const bool learned_features =
       options.network.features == TrainOptions::Network::Features::kLearned;
-  expect(learned || learned_features, "--features", "is of --reduction learned");
+  expect(learned_features || GetReduction(options.reduction).LearnsFeatures(), "--features",
+         "is of --reduction " + FeatureReductions());
   expect(learned_features || options.levels > 1, "--features", "needs --levels 2 or more");
   expect(!two_stage || arguments.effects.empty(), "--effects", "is of --method full");
   expect(arguments.from.empty() || arguments.effects.empty(), "--effects",

@@ -6,6 +6,7 @@
 
 #include "cli/option_values.h"
 #include "cli/train_words.h"
+#include "trainer/reduction/registry.h"
 #include "twin/effects/effect_json.h"
 
 namespace physpring {
@@ -19,17 +20,16 @@ template <class Options, class Visitor>
 void VisitHierarchyOptions(Options& options, Visitor& visit) {
   visit.Ratios("--ratios", &options.ratios, options.levels,
                "nodes of levels 1, 2, ... as parts of level 0's particles");
-  visit.Choice("--reduction", &options.reduction, kReductionWords,
-               "how nodes are joined to coarser ones");
+  visit.Reduction("--reduction", &options.reduction, "which nodes become one coarser one");
   auto& network = options.network;
   visit.Choice("--features", &network.features, kFeatureWords,
-               "of nodes, by which the learned reduction joins them: the network's, those of a "
+               "of nodes, by which a reduction that learns joins them: the network's, those of a "
                "network that does not learn, or positions at rest");
   visit.Count("--network-epochs", &network.epochs, 0, 10000, "of each level; 0: no corrections");
   visit.Count("--network-updates", &network.updates, 1, 1000,
               "of the network in an epoch (K_model)");
   visit.Count("--contact-updates", &network.contact_updates, 0, 1000,
-              "of restitution and friction alone after each epoch (K_col)");
+              "of the ground's contact alone after each epoch (K_col)");
   visit.Count("--latent", &network.latent, 2, 1024, "features of a node in the network");
 }
 
@@ -73,6 +73,18 @@ class FlagVisitor {
               const char* help) const {
     AddChoice(command_, flag, value, words, help);
   }
+  void Reduction(const char* flag, std::string* name, const std::string& help) const {
+    std::vector<std::string> names;
+    std::string each;
+    for (const auto& reduction : AllReductions()) {
+      names.push_back(reduction->name());
+      each += "; " + reduction->name() + ": " + reduction->help();
+    }
+    command_->add_option(flag, *name, help + each)
+        ->check(OneOf(names))
+        ->type_name(CLI::detail::join(names, "|"))
+        ->capture_default_str();
+  }
   void Count(const char* flag, int* count, int least, int most, const char* help) const {
     command_->add_option(flag, *count, help)
         ->check(WholeNumberBetween(least, most))
@@ -115,6 +127,9 @@ class JsonVisitor {
   void Choice(const char* flag, const Value* value, const Word<Value> (&words)[kCount],
               const char* /*help*/) {
     (*this)[flag] = WordOf(words, *value);
+  }
+  void Reduction(const char* flag, const std::string* name, const char* /*help*/) {
+    (*this)[flag] = *name;
   }
   void Count(const char* flag, const int* count, int /*least*/, int /*most*/,
              const char* /*help*/) {

@@ -20,12 +20,6 @@ inline constexpr Word<TrainOptions::Optimizer> kOptimizerWords[] = {
     {"gauss-newton", TrainOptions::Optimizer::kGaussNewton},
     {"adam", TrainOptions::Optimizer::kAdam}};
 
-inline constexpr Word<TrainOptions::Reduction> kReductionWords[] = {
-    {"learned", TrainOptions::Reduction::kLearned},
-    {"random", TrainOptions::Reduction::kRandom},
-    {"gramian", TrainOptions::Reduction::kGramian},
-    {"kmeans", TrainOptions::Reduction::kKMeans}};
-
 inline constexpr Word<TrainOptions::Network::Features> kFeatureWords[] = {
     {"learned", TrainOptions::Network::Features::kLearned},
     {"untrained", TrainOptions::Network::Features::kUntrained},

@@ -71,14 +71,15 @@ void AddNodeGeomDefaults(const LevelPlan& plan, XmlElement* node_class) {
                                  {"size", Number(Radius(system, 0))},
                                  {"contype", "0"},
                                  {"priority", "1"},
-                                 {"friction", Number(system.contact.friction) + " 0 0"},
+                                 {"friction", Number(system.contact.surface.friction) + " 0 0"},
                                  {"group", "3"}});
   if (plan.contact == ContactKind::kPlugin) {
     // found by MuJoCo and left to the plugin
     geom->SetAttribute("margin", Number(-kDepth).c_str());
     geom->SetAttribute("gap", Number(kDepth + kDetection).c_str());
   } else {
-    const double ratio = std::max(DampingRatio(system.contact.restitution), kLeastDampingRatio);
+    const double ratio =
+        std::max(DampingRatio(system.contact.surface.restitution), kLeastDampingRatio);
     geom->SetAttribute("solref", (Number(4 * plan.timestep) + " " + Number(ratio)).c_str());
   }
 }

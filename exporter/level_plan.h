@@ -39,7 +39,8 @@ struct LevelPlan {
   }
   // Whether the scene must ask for another cone of friction than MuJoCo's default.
   bool WantsEllipticCone() const {
-    return contact == ContactKind::kMujoco && system().contact.cone == FrictionCone::kElliptic;
+    return contact == ContactKind::kMujoco &&
+           system().contact.surface.cone == FrictionCone::kElliptic;
   }
   // s: the least of both bounds.
   double StableTimestep() const { return std::min(critical_timestep, largest_timestep); }

@@ -64,7 +64,8 @@ void AddContactKeys(const LevelPlan& plan, XmlElement* instance) {
   const SpringMassSystem& system = plan.system();
   AddScalars(system, NumberRole::kSurface, instance);
   AddScalars(system, NumberRole::kObject, instance);
-  if (system.contact.cone == FrictionCone::kPyramidal) AddConfig(instance, kAttrCone, kPyramidal);
+  if (system.contact.surface.cone == FrictionCone::kPyramidal)
+    AddConfig(instance, kAttrCone, kPyramidal);
   AddScalars(system, NumberRole::kReach, instance);
   AddLists(system, NumberRole::kReach, instance);
 }

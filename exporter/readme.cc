@@ -5,6 +5,7 @@
 
 #include "exporter/xml.h"
 #include "twin/cone_name.h"
+#include "twin/contact_words.h"
 
 namespace physpring {
 namespace {
@@ -42,8 +43,7 @@ std::string DescribeSprings(const LevelPlan& plan) {
 
 std::string DescribeContact(const LevelPlan& plan) {
   const ContactCoefficients& contact = plan.system().contact;
-  const std::string law =
-      fmt::format("restitution {:.3g}, friction {:.3g}", contact.restitution, contact.friction);
+  const std::string law = DescribeCoefficients(contact.surface);
   switch (plan.contact) {
     case ContactKind::kNone:
       return "Nodes touch nothing.";
@@ -53,7 +53,8 @@ std::string DescribeContact(const LevelPlan& plan) {
       return "Contact is MuJoCo's soft one, with the learned friction and a damping that bounces "
              "about as learned (" +
              law + "), and with the cone of the scene's `<option>`; the twin was trained with " +
-             (contact.cone == FrictionCone::kElliptic ? "`elliptic`" : "`pyramidal`, the default") +
+             (contact.surface.cone == FrictionCone::kElliptic ? "`elliptic`"
+                                                              : "`pyramidal`, the default") +
              ". The learned impulse law itself needs the plugin.";
   }
 }

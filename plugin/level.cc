@@ -107,7 +107,7 @@ void ReadContact(const Attributes& attributes, Level* level) {
     if (number.role == NumberRole::kSurface) level->has_surface |= attributes.Has(number.name);
     number.In(system) = attributes.Number(number.name, number.In(system));
   }
-  system.contact.cone = ConeOf(attributes.Word(kAttrCone, {kElliptic, kPyramidal}));
+  system.contact.surface.cone = ConeOf(attributes.Word(kAttrCone, {kElliptic, kPyramidal}));
   level->has_contact_radius = attributes.Has("contact_radius");
   system.contact_radius.setZero(system.node_count());
   if (level->has_contact_radius) {

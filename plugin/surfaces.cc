@@ -102,8 +102,8 @@ void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStat
   ContactPair<double> law = other_instance >= 0 ? laws_.object : laws_.surface;
   const int other_geom = contact.geom[1 - node_geom];
   if (model->geom_priority[other_geom] > model->geom_priority[geom]) {
-    law.friction = std::min(model->geom_friction[3 * other_geom], kMostFriction);
-    law.restitution = 0;
+    const double friction = std::min(model->geom_friction[3 * other_geom], kMostFriction);
+    law = {.friction = friction, .cone = law.cone};
   }
   touches_.push_back(
       {node, FindBody(model, data, other_body), law, normal, X(state[node]), gap, 0});

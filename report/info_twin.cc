@@ -6,6 +6,7 @@
 
 #include "report/info_text.h"
 #include "twin/cone_name.h"
+#include "twin/contact_words.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
 #include "twin/level_numbers.h"
@@ -85,13 +86,12 @@ std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
                         range.least, range.median, range.most, list.unit);
   }
   const ContactCoefficients& contact = system.contact;
-  text += fmt::format("  drag {:.4g} 1/s; contact: restitution {:.3g}, friction {:.3g}{}; ",
-                      system.drag, contact.restitution, contact.friction,
-                      contact.cone == FrictionCone::kElliptic ? "" : " (pyramidal cone)");
+  text += fmt::format("  drag {:.4g} 1/s; contact: {}{}; ", system.drag,
+                      DescribeCoefficients(contact.surface),
+                      contact.surface.cone == FrictionCone::kElliptic ? "" : " (pyramidal cone)");
   text += contact.collision_distance > 0
-              ? fmt::format("particles collide at {:.3g} m: restitution {:.3g}, friction {:.3g}\n",
-                            contact.collision_distance, contact.object_restitution,
-                            contact.object_friction)
+              ? fmt::format("particles collide at {:.3g} m: {}\n", contact.collision_distance,
+                            DescribeCoefficients(contact.object))
               : "particles do not collide\n";
   for (const EffectValues& effect : system.effects) {
     text += fmt::format("  effect {}: {}\n", effect.name, DescribeValues(effect));
@@ -116,7 +116,7 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
   Json contact;
   for (const LevelScalar& scalar : kLevelScalars) {
     const bool of_contact = scalar.role != NumberRole::kSprings;
-    if (scalar.role == NumberRole::kObject) contact["cone"] = ConeName(system.contact.cone);
+    if (scalar.role == NumberRole::kObject) contact["cone"] = ConeName(system.contact.surface.cone);
     (of_contact ? contact : json)[KeyOf(scalar.name, scalar.unit)] = scalar.In(system);
   }
   json["contact"] = contact;

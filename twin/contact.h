@@ -33,8 +33,7 @@ struct ContactLaws {
 // The laws with the coefficients of a level.
 template <class Real>
 ContactLaws<Real> LawsOf(const ContactCoefficients& c) {
-  return {{static_cast<Real>(c.restitution), static_cast<Real>(c.friction), c.cone},
-          {static_cast<Real>(c.object_restitution), static_cast<Real>(c.object_friction)}};
+  return {c.surface.To<Real>(), c.object.To<Real>()};
 }
 
 // Derivatives that the contacts of a sub-step add to, besides those with respect to the state.

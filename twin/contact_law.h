@@ -10,6 +10,7 @@
 #define PHYSPRING_TWIN_CONTACT_LAW_H_
 
 #include <Eigen/Core>
+#include <iterator>
 
 #include "twin/friction_cone.h"
 
@@ -18,21 +19,63 @@ namespace physpring {
 // Approach slower than this is no impact, m/s.
 inline constexpr double kApproach = 1e-4;
 
-// Restitution and friction of one kind of contact.
+// The coefficients of one kind of contact, or derivatives with respect to them. A new one is a
+// member, its line in kContactCoefficients, and its part in Impact and its adjoint.
 template <class Real>
 struct ContactPair {
-  Real restitution = 0;
-  Real friction = 0;
+  Real restitution = 0;  // e
+  Real friction = 0;     // mu
   FrictionCone cone = FrictionCone::kElliptic;
 
+  // With numbers of another precision.
+  template <class Other>
+  ContactPair<Other> To() const;
   // Adds derivatives with respect to the coefficients.
   template <class Other>
-  ContactPair& operator+=(const ContactPair<Other>& bar) {
-    restitution += static_cast<Real>(bar.restitution);
-    friction += static_cast<Real>(bar.friction);
-    return *this;
-  }
+  ContactPair& operator+=(const ContactPair<Other>& bar);
 };
+
+// A coefficient: its name against ground and geoms, and between particles, in twin files, MJCF and
+// messages; its greatest value (the least is 0).
+template <class Real>
+struct ContactCoefficient {
+  const char* name;
+  const char* object_name;
+  double most;
+  Real ContactPair<Real>::*member;
+};
+
+// All of them. Twin files, checks, training, the exporter, the plugin and reports go through this
+// list.
+template <class Real>
+inline constexpr ContactCoefficient<Real> kContactCoefficients[] = {
+    {"restitution", "object_restitution", 1, &ContactPair<Real>::restitution},
+    {"friction", "object_friction", 2, &ContactPair<Real>::friction},
+};
+
+inline constexpr int kContactCount = std::size(kContactCoefficients<double>);
+
+template <class Real>
+template <class Other>
+ContactPair<Other> ContactPair<Real>::To() const {
+  ContactPair<Other> other;
+  for (int i = 0; i < kContactCount; ++i) {
+    other.*kContactCoefficients<Other>[i].member =
+        static_cast<Other>(this->*kContactCoefficients<Real>[i].member);
+  }
+  other.cone = cone;
+  return other;
+}
+
+template <class Real>
+template <class Other>
+ContactPair<Real>& ContactPair<Real>::operator+=(const ContactPair<Other>& bar) {
+  for (int i = 0; i < kContactCount; ++i) {
+    this->*kContactCoefficients<Real>[i].member +=
+        static_cast<Real>(bar.*kContactCoefficients<Other>[i].member);
+  }
+  return *this;
+}
 
 // Relative velocity after the impact. Needs |n| = 1 and u . n < 0.
 template <class Real>

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers of a level, listed once: names, units, ranges and where they stand. The twin file,
 // the checks of SpringMassSystem, the plugin's attributes and the exporter go through these lists,
-// so a new coefficient is a member of SpringMassSystem or ContactCoefficients (with its default)
-// and a line here. Counts, springs' ends, effects and the cone of friction are no numbers.
+// so a new number is a member of SpringMassSystem (with its default) and a line here. Those of
+// contact come from kContactCoefficients (contact_law.h). Counts, springs' ends, effects and the
+// cone of friction are no numbers.
 #ifndef PHYSPRING_TWIN_LEVEL_NUMBERS_H_
 #define PHYSPRING_TWIN_LEVEL_NUMBERS_H_
 
+#include <array>
 #include <limits>
 
 #include "twin/spring_mass_system.h"
@@ -27,14 +29,19 @@ struct LevelScalar {
   const char* unit;  // "" for a ratio
   NumberRole role;
   double most;
-  double ContactCoefficients::*of_contact;  // null for one of the system's own
+  // Where it stands: in the system itself, in its contact, or in one kind of contact.
   double SpringMassSystem::*of_system = nullptr;
+  double ContactCoefficients::*of_contact = nullptr;
+  ContactPair<double> ContactCoefficients::*kind = nullptr;
+  double ContactPair<double>::*of_kind = nullptr;
 
-  double& In(SpringMassSystem& system) const {
-    return of_system ? system.*of_system : system.contact.*of_contact;
+  const double& In(const SpringMassSystem& system) const {
+    if (of_system) return system.*of_system;
+    return of_contact ? system.contact.*of_contact : system.contact.*kind.*of_kind;
   }
-  double In(const SpringMassSystem& system) const {
-    return of_system ? system.*of_system : system.contact.*of_contact;
+  double& In(SpringMassSystem& system) const {
+    if (of_system) return system.*of_system;
+    return of_contact ? system.contact.*of_contact : system.contact.*kind.*of_kind;
   }
 };
 
@@ -58,15 +65,39 @@ struct LevelList {
 inline constexpr double kAnyNumber = std::numeric_limits<double>::infinity();
 inline constexpr double kMoreThanZero = std::numeric_limits<double>::min();
 
-inline constexpr LevelScalar kLevelScalars[] = {
-    {"drag", "1/s", NumberRole::kSprings, kAnyNumber, nullptr, &SpringMassSystem::drag},
-    {"restitution", "", NumberRole::kSurface, 1, &ContactCoefficients::restitution},
-    {"friction", "", NumberRole::kSurface, 2, &ContactCoefficients::friction},
-    {"object_restitution", "", NumberRole::kObject, 1, &ContactCoefficients::object_restitution},
-    {"object_friction", "", NumberRole::kObject, 2, &ContactCoefficients::object_friction},
-    {"collision_distance", "m", NumberRole::kReach, kAnyNumber,
-     &ContactCoefficients::collision_distance},
-};
+constexpr auto MakeLevelScalars() {
+  std::array<LevelScalar, 2 + 2 * kContactCount> scalars{};
+  auto next = scalars.begin();
+  *next++ = {.name = "drag",
+             .unit = "1/s",
+             .role = NumberRole::kSprings,
+             .most = kAnyNumber,
+             .of_system = &SpringMassSystem::drag};
+  for (const auto& c : kContactCoefficients<double>) {
+    *next++ = {.name = c.name,
+               .unit = "",
+               .role = NumberRole::kSurface,
+               .most = c.most,
+               .kind = &ContactCoefficients::surface,
+               .of_kind = c.member};
+  }
+  for (const auto& c : kContactCoefficients<double>) {
+    *next++ = {.name = c.object_name,
+               .unit = "",
+               .role = NumberRole::kObject,
+               .most = c.most,
+               .kind = &ContactCoefficients::object,
+               .of_kind = c.member};
+  }
+  *next = {.name = "collision_distance",
+           .unit = "m",
+           .role = NumberRole::kReach,
+           .most = kAnyNumber,
+           .of_contact = &ContactCoefficients::collision_distance};
+  return scalars;
+}
+
+inline constexpr auto kLevelScalars = MakeLevelScalars();
 
 inline constexpr LevelList kLevelLists[] = {
     {"mass", "kg", NumberRole::kBody, false, kMoreThanZero, &SpringMassSystem::mass},

@@ -10,20 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "twin/contact_law.h"
 #include "twin/effects/effect_values.h"
-#include "twin/friction_cone.h"
 #include "twin/points.h"
 
 namespace physpring {
 
 // Coefficients of the impulse contact law (see contact_law.h).
 struct ContactCoefficients {
-  double restitution = 0.5;         // e in [0, 1], against ground and geoms
-  double friction = 0.3;            // Coulomb mu in [0, 2], against ground and geoms
-  double object_restitution = 0.7;  // e between particles
-  double object_friction = 0.3;     // mu between particles
-  double collision_distance = 0;    // m, between particles; 0 = particles do not collide
-  FrictionCone cone = FrictionCone::kElliptic;  // against ground and geoms
+  ContactPair<double> surface = {0.5, 0.3};  // against ground and geoms
+  ContactPair<double> object = {0.7, 0.3};   // between particles; their cone is elliptic
+  double collision_distance = 0;             // m, between particles; 0 = particles do not collide
 };
 
 struct SpringMassSystem {

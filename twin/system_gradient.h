@@ -15,7 +15,7 @@ struct SystemGradient {
   Eigen::VectorXd mass;                             // (nodes)
   double drag = 0;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  ContactLaws<double> contact;           // surface and object restitution and friction
+  ContactLaws<double> contact;           // with respect to the coefficients
   std::vector<Eigen::VectorXd> effects;  // for each effect, with respect to its values
 
   explicit SystemGradient(const SpringMassSystem& system);

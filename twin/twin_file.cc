@@ -48,7 +48,7 @@ void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) 
   if (!system.effects.empty()) {
     arrays[prefix + "effects"] = NpzArray::Text(EffectsToJson(system.effects));
   }
-  if (system.contact.cone == FrictionCone::kPyramidal) {  // absent where it is elliptic
+  if (system.contact.surface.cone == FrictionCone::kPyramidal) {  // absent where it is elliptic
     arrays[prefix + "cone"] = NpzArray::Text(kPyramidal);
   }
   for (const LevelScalar& number : kLevelScalars) {
@@ -211,7 +211,7 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
     if (cone != kPyramidal) {
       fields.Fail(prefix + "cone", fmt::format("holds {}, expected {}", Quote(cone), kPyramidal));
     }
-    level.system.contact.cone = FrictionCone::kPyramidal;
+    level.system.contact.surface.cone = FrictionCone::kPyramidal;
   }
   if (fields.Has(prefix + "effects")) {
     level.system.effects =

@@ -10,7 +10,8 @@ and exits with status 1; prints nothing and exits with 0 if all is right:
     cells      no table cell of README.md, CONTRIBUTING.md and docs/ is over 30 words
     decisions  docs/decisions/NNN-*.md have Status, Decision, Against and Measured, at most 150
                words, a number of their own, and are in the index
-    effects    the table of docs/physics.md has the effects of twin/effects/list.h, no others
+    tables     that of docs/physics.md has the effects of twin/effects/list.h, that of
+               docs/hierarchy.md the reductions of trainer/reduction/registry.cc, no others
     commands   in code blocks of README.md and docs/, commands and flags of lines that begin with
                `physpring ` are in the program's help
 """
@@ -135,15 +136,16 @@ def check_decisions(texts):
     return wrong
 
 
-def check_effects(root, texts):
-    registry = (root / "twin/effects/list.h").read_text(encoding="utf-8")
-    known = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
-             for name in re.findall(r"^ +(?:TWIN|BOTH)\((\w+)\)", registry, re.MULTILINE)}
-    page = pathlib.Path("docs/physics.md")
-    table = re.search(r"^\| effect \|.*\n((?:\|.*\n)*)", texts[page], re.MULTILINE)
-    told = set(re.findall(r"^\| `(\w+)`", table.group(1) if table else "", re.MULTILINE))
-    return ([f"{page}: the table lacks the effect {name}" for name in sorted(known - told)] +
-            [f"{page}: there is no effect {name}" for name in sorted(told - known)])
+def check_table(root, texts, registry, page, kind, entry, heading):
+    """The table of a page has a row for each entry of a registry, and no others."""
+    text = (root / registry).read_text(encoding="utf-8")
+    known = {name.lower() for name in re.findall(rf"^ +{entry}\((\w+)\)", text, re.MULTILINE)}
+    table = re.search(rf"^\| {heading} \|.*\n((?:\|.*\n)*)", texts[pathlib.Path(page)],
+                      re.MULTILINE)
+    rows = re.findall(r"^\| `(\w+)`", table.group(1) if table else "", re.MULTILINE)
+    told = {name.replace("_", "") for name in rows}
+    return ([f"{page}: the table lacks the {kind} {name}" for name in sorted(known - told)] +
+            [f"{page}: there is no {kind} {name}" for name in sorted(told - known)])
 
 
 def commands_of(text):
@@ -218,7 +220,10 @@ def main():
     wrong += check_pages_are_linked(texts, linked)
     wrong += check_cells(texts)
     wrong += check_decisions(texts)
-    wrong += check_effects(root, texts)
+    wrong += check_table(root, texts, "twin/effects/list.h", "docs/physics.md", "effect",
+                         "(?:TWIN|BOTH)", "effect")
+    wrong += check_table(root, texts, "trainer/reduction/registry.cc", "docs/hierarchy.md",
+                         "reduction", "REDUCTION", "`--reduction`")
     wrong += check_commands(texts, Help(sys.argv[1]))
     for line in wrong:
         print(line)

@@ -170,9 +170,9 @@ TEST(ExportScene, AsksForTheConeOfMujocosContacts) {
   Twin twin = SmallTwin(1);
   ExportOptions options;
   options.contact = ContactKind::kMujoco;
-  twin.levels[0].system.contact.cone = FrictionCone::kElliptic;
+  twin.levels[0].system.contact.surface.cone = FrictionCone::kElliptic;
   EXPECT_EQ(ExportedFolder(twin, options).Load("scene.xml")->opt.cone, mjCONE_ELLIPTIC);
-  twin.levels[0].system.contact.cone = FrictionCone::kPyramidal;
+  twin.levels[0].system.contact.surface.cone = FrictionCone::kPyramidal;
   EXPECT_EQ(ExportedFolder(twin, options).Load("scene.xml")->opt.cone, mjCONE_PYRAMIDAL);
 }
 
@@ -236,7 +236,7 @@ TEST(ExportScene, ActuatorsTakeControllersToTheirPlaceInOneStep) {
 TEST(ExportScene, NodesRestOnTheFloor) {
   Twin twin = SmallTwin(1);
   SpringMassSystem& system = twin.levels[0].system;
-  system.contact.friction = 0.8;
+  system.contact.surface.friction = 0.8;
   system.position.row(2).array() += 0.1;
   // no controllers: nothing holds it
   system.controllers = 0;

@@ -26,7 +26,7 @@ struct Throw {
   Throw() {
     system.position.row(2).array() += 0.01 - system.position.row(2).minCoeff();
     velocity.colwise() = Eigen::Vector3d(1, 0.5, -1);
-    system.contact = {0.5, 0.3, 0.7, 0.3, 0.01};
+    system.contact = {{0.5, 0.3}, {0.7, 0.3}, 0.01};
   }
 };
 
@@ -53,7 +53,7 @@ LevelScene ThrowInMujoco(const Throw& thrown, bool plugin_springs, int substeps)
 void ExpectMotionOfSimulator(bool plugin_springs, int substeps,
                              FrictionCone cone = FrictionCone::kElliptic) {
   Throw thrown;
-  thrown.system.contact.cone = cone;
+  thrown.system.contact.surface.cone = cone;
   Simulation simulation = ThrowInSimulator(thrown, substeps);
   LevelScene scene = ThrowInMujoco(thrown, plugin_springs, substeps);
   simulation.Advance(200 / substeps);
@@ -101,7 +101,7 @@ LevelSceneOptions OnFloor(double timestep) {
 
 TEST(Contact, BouncesToSquareOfRestitution) {
   const double e = 0.6, height = 0.5, h = 1e-4;
-  LevelScene scene(Ball(height + 0.01, {e, 0, 0, 0, 0}), OnFloor(h));
+  LevelScene scene(Ball(height + 0.01, {{e, 0}, {0, 0}, 0}), OnFloor(h));
   const double fall = std::sqrt(2 * height / kG);
   scene.Step(static_cast<int>(fall * (1 + e) / h));  // to the top of the bounce
   // the step of the impact: v h = 0.3 mm
@@ -110,7 +110,7 @@ TEST(Contact, BouncesToSquareOfRestitution) {
 
 TEST(Contact, SlidesAsFarAsCoulombLets) {
   const double mu = 0.4, speed = 1, h = 1e-4;
-  LevelScene scene(Ball(0.01, {0, mu, 0, 0, 0}), OnFloor(h));
+  LevelScene scene(Ball(0.01, {{0, mu}, {0, 0}, 0}), OnFloor(h));
   scene.SetState(Eigen::Vector3d(0, 0, 0.01), Eigen::Vector3d(speed, 0, 0));
   scene.Step(static_cast<int>(1.2 * speed / (mu * kG) / h));
   EXPECT_NEAR(scene.Positions()(0, 0), speed * speed / (2 * mu * kG), 1e-3);
@@ -128,7 +128,7 @@ struct Crash {
 
   void Run(double time) {
     system.drag = 0;
-    system.contact = {0.5, 0.3, 0, 0, 0};
+    system.contact = {{0.5, 0.3}, {0, 0}, 0};
     const ModelPtr model = CompileMjcf(LevelMjcf(system, options));
     const DataPtr data = MakeData(*model);
     const int first = model->nv - 3 * system.node_count();
@@ -165,7 +165,7 @@ TEST(Contact, KeepsMomentumWithAFreeBodyWithSubsteps) {
 TEST(Contact, BodyGetsOppositeImpulse) {
   // a ball hits a box of three times its mass at rest in the middle, with e = 0.5:
   // v = (m - e M) / (m + M), V = (1 + e) m / (m + M)
-  SpringMassSystem ball = Ball(0, {0.5, 0, 0, 0, 0});
+  SpringMassSystem ball = Ball(0, {{0.5, 0}, {0, 0}, 0});
   const LevelSceneOptions options{
       .plugin_springs = false, .contact = true, .gravity = {0, 0, 0}, .world = R"(
       <body pos="0.1 0 0"><freejoint/><geom type="box" size="0.05 0.05 0.05" mass="0.3"/></body>)"};
@@ -208,7 +208,7 @@ TEST(Contact, GeomOfHigherPriorityBringsItsFriction) {
   const double mu = 0.2, speed = 1, h = 1e-4;
   LevelSceneOptions options = OnFloor(h);
   options.world = R"(<geom type="plane" size="0 0 1" priority="3" friction="0.2 0 0"/>)";
-  LevelScene scene(Ball(0.01, {0, 0.4, 0, 0, 0}), options);
+  LevelScene scene(Ball(0.01, {{0, 0.4}, {0, 0}, 0}), options);
   scene.SetState(Eigen::Vector3d(0, 0, 0.01), Eigen::Vector3d(speed, 0, 0));
   scene.Step(static_cast<int>(1.2 * speed / (mu * kG) / h));
   EXPECT_NEAR(scene.Positions()(0, 0), speed * speed / (2 * mu * kG), 1e-3);
@@ -218,7 +218,7 @@ TEST(Contact, GeomOfHigherPriorityTakesTheBounce) {
   const double h = 1e-4, height = 0.1;
   LevelSceneOptions options = OnFloor(h);
   options.world = R"(<geom type="plane" size="0 0 1" priority="3"/>)";
-  LevelScene scene(Ball(height + 0.01, {0.6, 0.4, 0, 0, 0}), options);
+  LevelScene scene(Ball(height + 0.01, {{0.6, 0.4}, {0, 0}, 0}), options);
   scene.Step(static_cast<int>(1.2 * std::sqrt(2 * height / kG) / h));
   EXPECT_LT(std::abs(scene.Positions()(2, 0) - 0.01), 1e-3);
   EXPECT_LT(scene.Velocities().norm(), 2 * kG * h);
@@ -232,7 +232,7 @@ TEST(Contact, FingersHoldWhatTheyPress) {
   pair.stiffness = Eigen::VectorXd::Constant(1, 2000);
   pair.rest_length = Eigen::VectorXd::Constant(1, 0.01);
   pair.dashpot = Eigen::VectorXd::Constant(1, 5);
-  pair.contact = {0.2, 1, 0, 0, 0};
+  pair.contact = {{0.2, 1}, {0, 0}, 0};
   pair.contact_radius.setConstant(0.005);
   const ModelPtr model = CompileMjcf(
       LevelMjcf(pair, {.contact = true, .timestep = 2e-3, .substep = 0.25e-3, .world = R"(
@@ -266,7 +266,7 @@ TEST(Contact, HeavyFingersHoldStill) {
   block.stiffness = Eigen::VectorXd::Constant(springs, 300);
   block.dashpot = Eigen::VectorXd::Constant(springs, 0.02);
   block.rest_length = SpringLengths(block.springs, at, {});
-  block.contact = {0.06, 0.5, 0, 0, 0};
+  block.contact = {{0.06, 0.5}, {0, 0}, 0};
   block.contact_radius.setConstant(0.004);
   const ModelPtr model = CompileMjcf(
       LevelMjcf(block, {.contact = true, .timestep = 2e-3, .substep = 0.25e-3, .world = R"(
@@ -293,7 +293,7 @@ TEST(Contact, HeavyFingersHoldStill) {
 
 TEST(Contact, TwoTwinsBounceOffEachOther) {
   // equal balls head on: they leave with e times their speed
-  SpringMassSystem ball = Ball(0, {0, 0, 0.5, 0, 0});
+  SpringMassSystem ball = Ball(0, {{0, 0}, {0.5, 0}, 0});
   const std::string other = R"(
       <body name="other"><plugin instance="other"/>
         <body pos="0.1 0 0"><inertial pos="0 0 0" mass="0.1" diaginertia="1 1 1"/>

@@ -89,11 +89,11 @@ inline std::vector<GradientReport> CheckGradients(Scene scene) {
     mass.push_back({fmt::format("m{}", i), &scene.system.mass[i], 1e-5, gradient.mass[i]});
   }
   ContactCoefficients& c = scene.system.contact;
-  const std::vector<CheckedVariable> laws = {
-      {"restitution", &c.restitution, 1e-4, gradient.laws.surface.restitution},
-      {"friction", &c.friction, 1e-4, gradient.laws.surface.friction},
-      {"object restitution", &c.object_restitution, 1e-4, gradient.laws.object.restitution},
-      {"object friction", &c.object_friction, 1e-4, gradient.laws.object.friction}};
+  std::vector<CheckedVariable> laws;
+  for (const auto& [name, object_name, most, member] : kContactCoefficients<double>) {
+    laws.push_back({name, &(c.surface.*member), 1e-4, gradient.laws.surface.*member});
+    laws.push_back({object_name, &(c.object.*member), 1e-4, gradient.laws.object.*member});
+  }
   std::vector<GradientReport> reports;
   for (const auto& variables : {x, v, mass, laws}) {
     reports.push_back(CheckGradient(loss, variables));

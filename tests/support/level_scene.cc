@@ -84,7 +84,8 @@ Config Attributes(const SpringMassSystem& system, const LevelSceneOptions& optio
       if (number.role == NumberRole::kSprings) continue;
       Set(number.name, fmt::to_string(number.In(system)), &config);
     }
-    if (system.contact.cone == FrictionCone::kPyramidal) Set(kAttrCone, kPyramidal, &config);
+    if (system.contact.surface.cone == FrictionCone::kPyramidal)
+      Set(kAttrCone, kPyramidal, &config);
     Set("contact_radius", Join(system.contact_radius), &config);
   }
   for (const auto& [key, value] : options.config) Set(key, value, &config);

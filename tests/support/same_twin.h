@@ -16,8 +16,8 @@ inline void ExpectSameSystem(const SpringMassSystem& a, const SpringMassSystem& 
   EXPECT_EQ(a.rest_length, b.rest_length);
   EXPECT_EQ(a.dashpot, b.dashpot);
   EXPECT_EQ(a.drag, b.drag);
-  EXPECT_EQ(a.contact.restitution, b.contact.restitution);
-  EXPECT_EQ(a.contact.friction, b.contact.friction);
+  EXPECT_EQ(a.contact.surface.restitution, b.contact.surface.restitution);
+  EXPECT_EQ(a.contact.surface.friction, b.contact.surface.friction);
   ASSERT_EQ(a.effects.size(), b.effects.size());
   for (std::size_t i = 0; i < a.effects.size(); ++i) {
     EXPECT_EQ(a.effects[i].values, b.effects[i].values) << a.effects[i].name;

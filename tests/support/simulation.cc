@@ -19,7 +19,7 @@ SpringMassSystem Particles(const Points& position, double mass, int controllers)
   system.controllers = controllers;
   system.mass = Eigen::VectorXd::Constant(system.node_count(), mass);
   system.contact_radius = Eigen::VectorXd::Zero(system.node_count());
-  system.contact = {0, 0, 0, 0, 0};
+  system.contact = {{0, 0}, {0, 0}, 0};
   return system;
 }
 

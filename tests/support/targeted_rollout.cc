@@ -96,7 +96,7 @@ std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step) {
   SpringMassSystem& system = rollout.system;
   ContactCoefficients& contact = system.contact;
   const SystemGradient& exact = gradient.system;
-  std::vector<std::vector<CheckedVariable>> quantities(12);
+  std::vector<std::vector<CheckedVariable>> quantities(8);
   AddEntries("stiffness", &system.stiffness, exact.stiffness, 400 * step, &quantities[0]);
   AddEntries("rest length", &system.rest_length, exact.rest_length, 0.1 * step, &quantities[1]);
   AddEntries("dashpot", &system.dashpot, exact.dashpot, 3 * step, &quantities[2]);
@@ -106,12 +106,11 @@ std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step) {
   AddEntries("velocity", &rollout.velocity, gradient.velocity, 3 * step, &quantities[6]);
   quantities[7] = {{"drag", &system.drag, 0.5 * step, exact.drag}};
   const ContactLaws<double>& laws = exact.contact;
-  quantities[8] = {{"restitution", &contact.restitution, 0.5 * step, laws.surface.restitution}};
-  quantities[9] = {{"friction", &contact.friction, 0.5 * step, laws.surface.friction}};
-  quantities[10] = {
-      {"object restitution", &contact.object_restitution, 0.5 * step, laws.object.restitution}};
-  quantities[11] = {
-      {"object friction", &contact.object_friction, 0.5 * step, laws.object.friction}};
+  for (const auto& [name, object_name, most, member] : kContactCoefficients<double>) {
+    quantities.push_back({{name, &(contact.surface.*member), 0.5 * step, laws.surface.*member}});
+    quantities.push_back(
+        {{object_name, &(contact.object.*member), 0.5 * step, laws.object.*member}});
+  }
 
   std::vector<GradientReport> reports;
   for (const std::vector<CheckedVariable>& variables : quantities) {

@@ -85,8 +85,9 @@ GradientReport CheckImpact(Vector3d u, Vector3d n, ContactPair<double> law, doub
   for (int j = 0; j < 3; ++j) {
     variables.push_back({fmt::format("n{}", j), &n[j], 1e-4, n_bar[j] / speed});
   }
-  variables.push_back({"restitution", &law.restitution, 1e-4, law_bar.restitution / speed});
-  variables.push_back({"friction", &law.friction, 1e-4, law_bar.friction / speed});
+  for (const auto& [name, object_name, most, member] : kContactCoefficients<double>) {
+    variables.push_back({name, &(law.*member), 1e-4, law_bar.*member / speed});
+  }
   const GradientReport rest = CheckGradient(loss, variables);
   report.passed = report.passed && rest.passed;
   report.log += rest.log;

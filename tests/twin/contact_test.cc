@@ -76,7 +76,7 @@ TEST(Contact, ReflectsAtTheNormalOfTheGeom) {
   for (const Place& place : kPlaces) {
     const Vector3d n = place.normal.normalized(), t = SomeTangent(n);
     Scene scene = At(place, -2 * n + 0.5 * t);
-    scene.system.contact.restitution = 0.25;
+    scene.system.contact.surface.restitution = 0.25;
     const Scene expected = At(place, 0.5 * n + 0.5 * t);
     EXPECT_NEAR((scene.After() - expected.v).norm(), 0, 1e-12) << place.name;
   }
@@ -86,7 +86,7 @@ TEST(Contact, StopsTheSlidingRelativeToTheSurface) {
   for (const Place& place : kPlaces) {
     const Vector3d n = place.normal.normalized(), t = SomeTangent(n);
     Scene scene = At(place, -2 * n + 0.5 * t);
-    scene.system.contact.friction = 1;
+    scene.system.contact.surface.friction = 1;
     EXPECT_NEAR((scene.After() - At(place, {0, 0, 0}).v).norm(), 0, 1e-12) << place.name;
   }
 }
@@ -106,7 +106,7 @@ TEST(ContactAdjoint, MatchesDifferencesAtAGeom) {
     const Vector3d n = place.normal.normalized(), t = SomeTangent(n);
     for (double friction : {0.05, 0.9}) {  // slides, sticks
       Scene scene = At(place, -0.7 * n + 0.5 * t);
-      scene.system.contact = {0.4, friction, 0, 0, 0};
+      scene.system.contact = {{0.4, friction}, {0, 0}, 0};
       for (const GradientReport& report : CheckGradients(scene)) {
         EXPECT_TRUE(report.passed) << place.name << "\n" << report.log;
       }
@@ -129,7 +129,7 @@ TEST(ContactAdjoint, MatchesDifferencesOnASlope) {
   for (double friction : {0.1, 1.5}) {
     Scene scene(Vector3d(0.1, 0.2, -0.3), Vector3d(0.5, 0.3, -1));
     scene.environment.ground = Eigen::Vector4d(2, 3, 6, 0.7) / 7;
-    scene.system.contact = {0.6, friction, 0, 0, 0};
+    scene.system.contact = {{0.6, friction}, {0, 0}, 0};
     ASSERT_NE(scene.After(), scene.v);
     ExpectGradientsMatch(scene);
   }
@@ -138,7 +138,7 @@ TEST(ContactAdjoint, MatchesDifferencesOnASlope) {
 TEST(ContactAdjoint, MatchesDifferencesBetweenTwoSurfaces) {
   const Place& face = kPlaces[4];
   Scene scene = At(face, {0.3, 1, -0.4});
-  scene.system.contact = {0.4, 0.1, 0, 0, 0};
+  scene.system.contact = {{0.4, 0.1}, {0, 0}, 0};
   const Points alone = scene.After();
   const Vector3d x = scene.x.col(0), n = -Vector3d(scene.v.col(0)).normalized();
   scene.environment.ground = Eigen::Vector4d(n[0], n[1], n[2], n.dot(x) - 1e-4);

@@ -20,7 +20,7 @@ Scene Crowd() {
   Random random(5);
   const Points x = random.Box(12, 0.05);
   Scene scene(x, -4 * x + random.Box(12, 0.1));
-  scene.system.contact = {0, 0, 0.6, 0.2, 0.06};
+  scene.system.contact = {{0, 0}, {0.6, 0.2}, 0.06};
   for (double& mass : scene.system.mass) mass = random(0.05, 0.2);
   scene.pairs = Contact<double>(scene.system, scene.environment)
                     .FindPairs(StateAt(scene.x, Points::Zero(3, 12)), 0.01);
@@ -36,8 +36,8 @@ TEST(ContactAdjoint, MatchesDifferencesInACrowd) {
 TEST(ContactAdjoint, MatchesDifferencesInACrowdOnTheGround) {
   Scene scene = Crowd();
   scene.environment.ground = Eigen::Vector4d(0, 0, 1, -0.01);
-  scene.system.contact.restitution = 0.5;
-  scene.system.contact.friction = 0.1;
+  scene.system.contact.surface.restitution = 0.5;
+  scene.system.contact.surface.friction = 0.1;
   ExpectGradientsMatch(scene);
 }
 
@@ -52,7 +52,7 @@ Scene TwoParticles(double distance, double speed) {
   x(0, 1) = distance;
   v(0, 1) = -speed;
   Scene scene(x, v);
-  scene.system.contact = {0, 0, 1, 0, 0.05};
+  scene.system.contact = {{0, 0}, {1, 0}, 0.05};
   scene.pairs = {{0, 1}};
   return scene;
 }

@@ -41,8 +41,8 @@ TargetedRollout OnTheGround(double restitution, double friction) {
   TargetedRollout rollout = RandomRollout(4, 1);
   rollout.environment.ground = Eigen::Vector4d(0, 0, 1, -0.085);
   rollout.velocity.row(2).array() -= 1;
-  rollout.system.contact.restitution = restitution;
-  rollout.system.contact.friction = friction;
+  rollout.system.contact.surface.restitution = restitution;
+  rollout.system.contact.surface.friction = friction;
   return rollout;
 }
 

@@ -19,8 +19,8 @@ const Environment kTable{.gravity = {0, 0, -9.81}, .ground = Eigen::Vector4d(0, 
 
 SpringMassSystem Ball(const Vector3d& position, double restitution, double friction) {
   SpringMassSystem system = Particles(position, 0.1);
-  system.contact.restitution = restitution;
-  system.contact.friction = friction;
+  system.contact.surface.restitution = restitution;
+  system.contact.surface.friction = friction;
   return system;
 }
 
@@ -67,7 +67,7 @@ TEST(SimulatorContact, FrictionStopsASliderAfterCoulombsDistance) {
 TEST(SimulatorContact, PyramidalFrictionAlignsTheVelocities) {
   const double mu = 0.5, h = 1e-4;
   SpringMassSystem block = Ball({0, 0, 0}, 0, mu);
-  block.contact.cone = FrictionCone::kPyramidal;
+  block.contact.surface.cone = FrictionCone::kPyramidal;
   Simulation simulation(block, kTable, h, 100);  // 10 ms a frame
   simulation.SetVelocity(Vector3d(1, 0.3, 0));
   simulation.Advance(10);
@@ -188,8 +188,8 @@ SpringMassSystem Colliding(int count, double distance, double restitution, doubl
   for (int i = 0; i < count; ++i) position(0, i) = i;
   SpringMassSystem system = Particles(position, 0.1);
   system.contact.collision_distance = distance;
-  system.contact.object_restitution = restitution;
-  system.contact.object_friction = friction;
+  system.contact.object.restitution = restitution;
+  system.contact.object.friction = friction;
   return system;
 }
 

@@ -279,8 +279,8 @@ TEST(Simulator, SetParametersIsANewSimulator) {
   second.dashpot *= 3;
   second.mass *= 0.7;
   second.drag = 2;
-  second.contact.restitution = 0.9;
-  second.contact.friction = 0.1;
+  second.contact.surface.restitution = 0.9;
+  second.contact.surface.friction = 0.1;
   const Environment environment{.gravity = {0, 0, -9.81}, .ground = Eigen::Vector4d(0, 0, 1, -0.1)};
   const SimulationOptions options{.frame_time = 0.2, .substeps = 400};
   const Points hand = first.position.rightCols(1);

@@ -47,10 +47,10 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
     EXPECT_EQ(system.rest_length, expected.rest_length);
     EXPECT_EQ(system.dashpot, expected.dashpot);
     EXPECT_EQ(system.drag, expected.drag);
-    EXPECT_EQ(system.contact.restitution, expected.contact.restitution);
-    EXPECT_EQ(system.contact.friction, expected.contact.friction);
-    EXPECT_EQ(system.contact.object_restitution, expected.contact.object_restitution);
-    EXPECT_EQ(system.contact.object_friction, expected.contact.object_friction);
+    EXPECT_EQ(system.contact.surface.restitution, expected.contact.surface.restitution);
+    EXPECT_EQ(system.contact.surface.friction, expected.contact.surface.friction);
+    EXPECT_EQ(system.contact.object.restitution, expected.contact.object.restitution);
+    EXPECT_EQ(system.contact.object.friction, expected.contact.object.friction);
     EXPECT_EQ(system.contact.collision_distance, expected.contact.collision_distance);
     EXPECT_EQ(system.contact_radius, expected.contact_radius);
     EXPECT_EQ(read.levels[n].substeps_per_second, 20010);
@@ -59,11 +59,11 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
 
 TEST_F(TwinFile, KeepsTheConeOfFriction) {
   Twin twin = MakeTwin();
-  EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.cone, FrictionCone::kElliptic);
-  twin.levels[1].system.contact.cone = FrictionCone::kPyramidal;
+  EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.surface.cone, FrictionCone::kElliptic);
+  twin.levels[1].system.contact.surface.cone = FrictionCone::kPyramidal;
   WriteTwin(twin, path_);
-  EXPECT_EQ(ReadTwin(path_).levels[0].system.contact.cone, FrictionCone::kElliptic);
-  EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.cone, FrictionCone::kPyramidal);
+  EXPECT_EQ(ReadTwin(path_).levels[0].system.contact.surface.cone, FrictionCone::kElliptic);
+  EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.surface.cone, FrictionCone::kPyramidal);
   arrays_["level0/cone"] = NpzArray::Text("round");
   EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'level0/cone' holds 'round', expected pyramidal");
   // as MuJoCo, which takes no blanks around its keywords

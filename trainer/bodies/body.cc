@@ -33,7 +33,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Body& body, doubl
   }
   SpringMassSystem system = MakeStartSystem(recording, topology);
   if (body.mass.size() > 0) system.mass = body.mass;
-  system.contact.cone = body.cone;
+  system.contact.surface.cone = body.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   system.effects = body.effects;
   return system;

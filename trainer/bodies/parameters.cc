@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "trainer/bodies/logistic.h"
+#include "trainer/bodies/contact_logits.h"
 
 namespace physpring {
 namespace {
@@ -47,7 +47,7 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       springs_(base.spring_count()),
       length_class_(options.length_classes ? LengthClasses(base.rest_length)
                                            : std::vector<int>(springs_, 0)),
-      classes_(options.contact ? kFriction + 1 : kDrag + 1),
+      classes_(options.contact ? kContact + kContactCount : kContact),
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
       effects_at_(classes_ + 2 * class_count_),
       size_(effects_at_ + effects_.size()) {
@@ -69,6 +69,16 @@ Parameters::Kind Parameters::kind(int i) const {
   if (within(dashpot_)) return Kind::kDashpot;
   if (within(rest_length_)) return Kind::kRestLength;
   return Kind::kGlobal;
+}
+
+int Parameters::friction() const {
+  if (!options_.contact) return -1;
+  int entry = kContact;
+  for (const auto& c : kContactCoefficients<double>) {
+    if (c.member == &ContactPair<double>::friction) break;
+    ++entry;
+  }
+  return entry;
 }
 
 bool Parameters::IsControllerSpring(int e) const {
@@ -111,9 +121,7 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
   }
   system.drag *= std::exp(values[kDrag]);
   if (options_.contact) {
-    system.contact.restitution =
-        Sigmoid(Logit(base_.contact.restitution, 1) + values[kRestitution], 1);
-    system.contact.friction = Sigmoid(Logit(base_.contact.friction, 2) + values[kFriction], 2);
+    MoveLogits(values.segment<kContactCount>(kContact), &system.contact.surface);
   }
   const std::vector<EffectValues> moved =
       effects_.Apply(values.segment(effects_at_, effects_.size()));
@@ -142,11 +150,8 @@ Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringM
   }
   bar[kDrag] = gradient.drag * system.drag;
   if (options_.contact) {
-    // forward: y = top / (1 + exp(-x)), dy/dx = y (1 - y / top)
-    const ContactPair<double>& surface = gradient.contact.surface;
-    const double e = system.contact.restitution, mu = system.contact.friction;
-    bar[kRestitution] = surface.restitution * e * (1 - e);
-    bar[kFriction] = surface.friction * mu * (1 - mu / 2);
+    bar.segment<kContactCount>(kContact) =
+        MoveLogitsAdjoint(system.contact.surface, gradient.contact.surface);
   }
   bar.segment(effects_at_, effects_.size()) =
       effects_.Adjoint(values.segment(effects_at_, effects_.size()),

@@ -4,7 +4,7 @@
 //   dashpot_e     = base_e exp(global + class(e) + own_e)
 //   rest_length_e = base_e exp(own_e)
 //   drag          = base exp(.)
-//   restitution   = 1 / (1 + exp(-.)),  friction = 2 / (1 + exp(-.))
+//   coefficients of the contact with the ground: contact_logits.h
 //   values of the base's last effects: effect_entries.h
 // Zero is the base system. Springs of about the same rest length are one class: on a regular mesh
 // the springs along, across and diagonal, which in a homogeneous body are alike. The `own` parts
@@ -24,7 +24,7 @@ struct ParameterOptions {
   bool spring_stiffness = true;  // single springs, else one factor for all
   bool spring_dashpot = true;    // single dashpots, else one factor for all
   bool spring_rest_length = false;
-  bool contact = false;        // restitution and friction of the ground
+  bool contact = false;        // coefficients of the contact with the ground
   int free_effects = 0;        // so many of the base's effects, the last ones; the others stay
   double moment_unit = 1;      // of those that are moments (effect_entries.h)
   bool length_classes = true;  // else all springs are of one class
@@ -47,7 +47,7 @@ class Parameters {
   // The entries of effects' values along the body.
   std::vector<int> AlongBodyEntries() const;
   // The entry of the ground's friction; -1: none.
-  int friction() const { return options_.contact ? kFriction : -1; }
+  int friction() const;
   // The first entry of the effects' values, and how many there are.
   int effects() const { return effects_at_; }
   int effect_count() const { return effects_.size(); }
@@ -73,9 +73,9 @@ class Parameters {
   int effects_at_;                                        // offset of the effects' values
   int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
   int size_;
-  // offsets of the global parts; restitution and friction only where wanted
+  // offsets of the global parts; those of contact only where wanted
   static constexpr int kStiffness = 0, kControllerStiffness = 1, kDashpot = 2,
-                       kControllerDashpot = 3, kDrag = 4, kRestitution = 5, kFriction = 6;
+                       kControllerDashpot = 3, kDrag = 4, kContact = 5;
 };
 
 }  // namespace physpring

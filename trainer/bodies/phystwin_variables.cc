@@ -100,10 +100,10 @@ SpringMassSystem MakePhysTwinSystem(const Recording& recording, const PhysTwinVa
   system.stiffness = variables.spring_y * mass * system.rest_length.cwiseInverse();
   system.dashpot.setConstant(variables.dashpot * mass);
   system.drag = variables.drag;
-  system.contact.restitution = variables.restitution;
-  system.contact.friction = variables.friction;
-  system.contact.object_restitution = variables.object_restitution;
-  system.contact.object_friction = variables.object_friction;
+  system.contact.surface.restitution = variables.restitution;
+  system.contact.surface.friction = variables.friction;
+  system.contact.object.restitution = variables.object_restitution;
+  system.contact.object.friction = variables.object_friction;
   system.contact.collision_distance = self_collision ? variables.collision_distance : 0;
   return system;
 }

@@ -77,8 +77,8 @@ SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptio
   system.stiffness = system.rest_length.cwiseInverse();
   system.dashpot = Eigen::VectorXd::Ones(system.spring_count());
   system.drag = kStartDrag;
-  system.contact.restitution = kStartRestitution;
-  system.contact.friction = kStartFriction;
+  system.contact.surface.restitution = kStartRestitution;
+  system.contact.surface.friction = kStartFriction;
   system.contact_radius = Eigen::VectorXd::Constant(nodes, ContactRadius(recording));
   return system;
 }

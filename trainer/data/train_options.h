@@ -36,8 +36,7 @@ struct TrainOptions {
   // The hierarchy: `levels` in all, level l >= 1 with ratios[l - 1] of the nodes of level 0.
   int levels = 1;
   std::vector<double> ratios = {0.6, 0.4, 0.3};
-  enum class Reduction { kLearned, kRandom, kGramian, kKMeans };
-  Reduction reduction = Reduction::kLearned;
+  std::string reduction = "learned";  // the name of one in reduction/registry.h
 
   // The graph network; the paper's values.
   struct Network {

@@ -58,7 +58,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   if (twin.order.size() == 0) {
     options.neighbours.assign(std::begin(kNeighbours), std::end(kNeighbours));
   }
-  options.cone = own.base.contact.cone;
+  options.cone = own.base.contact.surface.cone;
   const Recording shaped = WithShapeOf(own.base, recording);
   for (const Body& candidate : CandidateBodies(shaped, options)) {
     SpringMassSystem system = StartSystem(shaped, candidate, kStart);

@@ -17,15 +17,15 @@ constexpr double kRate = 1e-3;
 constexpr double kAdamEpsilon = 1e-8;  // the default of PhysTwin's optimiser
 constexpr int kSelectEvery = 20;       // passes
 constexpr double kLeastY = 1e-3;       // N, so that ln Y exists
-constexpr int kCoefficients = 4;
-constexpr double kLargest[kCoefficients] = {1, 2, 1, 2};  // e, mu, e, mu
+constexpr int kCoefficients = 2 * kContactCount;
 
-// The contact coefficients in the order of the values.
-template <class Coefficients>
-auto CoefficientsOf(Coefficients& contact) {
-  return std::array{&contact.restitution, &contact.friction, &contact.object_restitution,
-                    &contact.object_friction};
+// Coefficient i of contact, in the order of the values: the ground's, then the particles'.
+template <class Contact>
+auto& CoefficientOf(Contact& contact, int i) {
+  const auto member = kContactCoefficients<double>[i % kContactCount].member;
+  return i < kContactCount ? contact.surface.*member : contact.object.*member;
 }
+double Largest(int i) { return kContactCoefficients<double>[i % kContactCount].most; }
 
 // One recording on its way through a pass.
 struct Walker {
@@ -47,8 +47,7 @@ FirstOrderStage::FirstOrderStage(const SpringMassSystem& start, int most_passes)
   for (int e = 0; e < springs; ++e) {
     values_[e] = std::log(std::max(kLeastY, start.stiffness[e] * start.rest_length[e] / mass_));
   }
-  const auto coefficients = CoefficientsOf(start.contact);
-  for (int i = 0; i < kCoefficients; ++i) values_[springs + i] = *coefficients[i];
+  for (int i = 0; i < kCoefficients; ++i) values_[springs + i] = CoefficientOf(start.contact, i);
   adam_.epsilon = kAdamEpsilon;
   best_ = values_;
 }
@@ -60,9 +59,8 @@ SpringMassSystem FirstOrderStage::With(const Eigen::VectorXd& values) const {
     const double y = std::min(std::exp(values[e]), kPhysTwinLargestY);
     system.stiffness[e] = y * mass_ / system.rest_length[e];
   }
-  const auto coefficients = CoefficientsOf(system.contact);
   for (int i = 0; i < kCoefficients; ++i) {
-    *coefficients[i] = std::clamp(values[springs + i], 0.0, kLargest[i]);
+    CoefficientOf(system.contact, i) = std::clamp(values[springs + i], 0.0, Largest(i));
   }
   return system;
 }
@@ -75,13 +73,10 @@ Eigen::VectorXd FirstOrderStage::Derivatives(const SystemGradient& gradient) con
     const double y = std::exp(values_[e]);
     bar[e] = y < kPhysTwinLargestY ? gradient.stiffness[e] * y * mass_ / start_.rest_length[e] : 0;
   }
-  const ContactLaws<double>& laws = gradient.contact;
-  const double coefficients[kCoefficients] = {laws.surface.restitution, laws.surface.friction,
-                                              laws.object.restitution, laws.object.friction};
   for (int i = 0; i < kCoefficients; ++i) {
     // forward: clamped to [0, largest]
     const double value = values_[springs + i];
-    bar[springs + i] = value >= 0 && value <= kLargest[i] ? coefficients[i] : 0;
+    bar[springs + i] = value >= 0 && value <= Largest(i) ? CoefficientOf(gradient.contact, i) : 0;
   }
   return bar;
 }

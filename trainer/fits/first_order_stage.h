@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PhysTwin's second stage: Adam on ln Y of every spring and on the contact coefficients, a step
 // after every frame with gradients that reach back that one frame (frame_walk.h). The parameters
-// change while the motion goes on. Y is clamped to [0, 1e5] N, restitution to [0, 1], friction to
-// [0, 2]; beyond, a parameter has no gradient.
+// change while the motion goes on. Y is clamped to [0, 1e5] N, the coefficients to their ranges;
+// beyond, a parameter has no gradient.
 #ifndef PHYSPRING_TRAINER_FITS_FIRST_ORDER_STAGE_H_
 #define PHYSPRING_TRAINER_FITS_FIRST_ORDER_STAGE_H_
 
@@ -53,7 +53,7 @@ class FirstOrderStage {
   SpringMassSystem start_;
   int most_passes_;
   double mass_;             // of a particle, kg
-  Eigen::VectorXd values_;  // ln Y of each spring, e and mu of the ground, e and mu of particles
+  Eigen::VectorXd values_;  // ln Y of each spring, coefficients of the ground, of particles
   Adam adam_;
   int passes_ = 0;
   bool diverged_ = false;

@@ -6,33 +6,16 @@
 #include <cmath>
 
 #include "trainer/fits/level_fit.h"
-#include "trainer/fits/topology_fit.h"
 #include "trainer/network/graph_network.h"
-#include "trainer/reduction/baselines.h"
-#include "trainer/reduction/galerkin.h"
-#include "trainer/reduction/gramian.h"
+#include "trainer/projection/galerkin.h"
+#include "trainer/reduction/registry.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 
 namespace physpring {
 namespace {
 
-constexpr double kTopologyShare = 0.15;  // of a level's work
-
-// Null for a reduction that is learned.
-Reduction ReductionOf(TrainOptions::Reduction method) {
-  switch (method) {
-    case TrainOptions::Reduction::kLearned:
-      return nullptr;
-    case TrainOptions::Reduction::kRandom:
-      return RandomAssignment;
-    case TrainOptions::Reduction::kGramian:
-      return GramianAssignment;
-    case TrainOptions::Reduction::kKMeans:
-      return KMeansAssignment;
-  }
-  return nullptr;
-}
+constexpr double kReductionShare = 0.15;  // of a level's work
 
 // Away from the ground; where there is none, against gravity.
 Eigen::Vector3d Up(const Recording& recording) {
@@ -53,40 +36,6 @@ Twin WithNextLevel(const Twin& below, const Assignment& assignment, const Eigen:
   return twin;
 }
 
-// An assignment that is drawn in one step.
-struct Drawn {
-  Assignment assignment;
-
-  template <class Visitor>
-  void Visit(Visitor&& visit) {
-    visit(assignment);
-  }
-};
-
-// The assignments that the next level may have; a learned reduction learns the weights on.
-std::vector<Assignment> Reduce(const Twin& twin, const FitData& data, const TrainOptions& options,
-                               const GraphNetwork& network, Eigen::VectorXd* weights,
-                               const Work& work) {
-  const int level = static_cast<int>(twin.levels.size());
-  const int nodes = NodesOfLevel(level, twin.levels[0].system.node_count(), options);
-  const Reduction reduce = ReductionOf(options.reduction);
-  if (reduce) {
-    const std::uint64_t seed = options.seed * 1000 + static_cast<std::uint64_t>(level);
-    const auto draw = [&](Drawn* drawn) -> StepReport {
-      drawn->assignment = reduce(twin.levels.back().system, nodes, seed);
-      return {true, 1, fmt::format("level {}: {} nodes", level, nodes)};
-    };
-    return {work.Follow(Drawn(), draw).assignment};
-  }
-  const TopologyFit start(data, options, twin, network, *weights, nodes, Up(data.recordings[0]));
-  const TopologyFit topology = work.Follow(start, [](TopologyFit* fit) -> StepReport {
-    fit->Step();
-    return {fit->done(), fit->Progress(), fit->Status()};
-  });
-  *weights = topology.weights();
-  return topology.candidates();
-}
-
 }  // namespace
 
 void ExpectCoarserLevels(const FitData& data, const TrainOptions& options) {
@@ -105,20 +54,25 @@ void ExpectCoarserLevels(const FitData& data, const TrainOptions& options) {
 
 Twin FitHierarchy(const Twin& dense, const FitData& data, const TrainOptions& options,
                   const Work& work) {
+  const Reduction& reduction = GetReduction(options.reduction);
   const GraphNetwork network(options.network.latent, options.seed);
+  const Eigen::Vector3d up = Up(data.recordings[0]);
   Eigen::VectorXd weights = network.first_weights();  // as the last level left them
   Twin twin = dense;
+  const int particles = dense.levels[0].system.node_count();
   const double share = 1.0 / std::max(1, options.levels - 1);
   for (int level = 1; level < options.levels; ++level) {
     const Work of_level =
         work.Part(fmt::format("level {}", level), (level - 1) * share, level * share);
+    const Reduced reduced = reduction.Reduce(
+        {twin, NodesOfLevel(level, particles, options), up, data, options, network, weights},
+        of_level.Part("reduction", 0, kReductionShare));
     std::vector<Twin> candidates;
-    for (const Assignment& assignment : Reduce(twin, data, options, network, &weights,
-                                               of_level.Part("reduction", 0, kTopologyShare))) {
-      candidates.push_back(WithNextLevel(twin, assignment, Up(data.recordings[0])));
+    for (const Assignment& assignment : reduced.candidates) {
+      candidates.push_back(WithNextLevel(twin, assignment, up));
     }
-    const FittedLevel fitted = FitLevel(data, options, candidates, network, weights,
-                                        of_level.Part("fit", kTopologyShare, 1));
+    const FittedLevel fitted = FitLevel(data, options, candidates, network, reduced.weights,
+                                        of_level.Part("fit", kReductionShare, 1));
     twin.levels.push_back(fitted.level);
     weights = fitted.weights;
     work.Reached(twin);

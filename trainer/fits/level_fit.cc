@@ -107,7 +107,7 @@ StepReport StepNetwork(const LevelModel& model, const Eigen::VectorXd& common,
     // logits
     Features springs_bar, system_bar;
     CorrectionsAdjoint(system, loss->gradient, &springs_bar, &system_bar);
-    fit->Update(system_bar.rightCols(2).transpose());
+    fit->Update(system_bar.rightCols(kContactCount).transpose());
   }
   return report;
 }
@@ -116,7 +116,7 @@ StepReport StepNetwork(const LevelModel& model, const Eigen::VectorXd& common,
 LevelValues FitNetwork(const LevelModel& model, const Eigen::VectorXd& common,
                        const Eigen::VectorXd& weights, const Work& work) {
   const TrainOptions::Network& options = model.options().network;
-  if (options.epochs == 0) return {common, weights, Eigen::VectorXd::Zero(2)};
+  if (options.epochs == 0) return {common, weights, Eigen::VectorXd::Zero(kContactCount)};
   const CorrectionsFit start(options, model.first().ground.has_value(),
                              model.network().WithoutCorrections(weights));
   const CorrectionsFit fit =

@@ -47,8 +47,8 @@ Parameters LevelModel::CommonParameters() const {
 SpringMassSystem LevelModel::NetworkBase(const LevelValues& values) const {
   SpringMassSystem base = CommonParameters().Apply(values.common);
   if (values.contact.isZero(0)) return base;
-  Features of_system(1, 3);
-  of_system << 0, values.contact[0], values.contact[1];
+  Features of_system(1, 1 + kContactCount);
+  of_system << 0, values.contact.transpose();
   return ApplyCorrections(base, Features::Zero(base.spring_count(), 2), of_system);
 }
 

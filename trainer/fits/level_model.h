@@ -14,7 +14,7 @@
 namespace physpring {
 
 // Common factors, the network's weights, and what is added to the logits of the ground's
-// restitution and friction.
+// coefficients of contact.
 struct LevelValues {
   Eigen::VectorXd common, weights, contact;
 };

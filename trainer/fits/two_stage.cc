@@ -96,7 +96,7 @@ TwoStage::TwoStage(const FitData& data, const TrainOptions& options)
 SpringMassSystem TwoStage::SystemAt(const Eigen::VectorXd& point) const {
   SpringMassSystem system = MakePhysTwinSystem(
       data_.recordings[0], FromUnitCube(point, length_scale_), options_.self_collision);
-  if (options_.cone) system.contact.cone = *options_.cone;
+  if (options_.cone) system.contact.surface.cone = *options_.cone;
   return system;
 }
 

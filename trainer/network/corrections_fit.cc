@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "twin/contact_law.h"
+
 namespace physpring {
 namespace {
 
@@ -17,7 +19,7 @@ CorrectionsFit::CorrectionsFit(const TrainOptions::Network& options, bool contac
     : options_(options),
       updates_{options.updates, contact ? options.contact_updates : 0},
       weights_(weights),
-      contact_(Eigen::VectorXd::Zero(2)),
+      contact_(Eigen::VectorXd::Zero(kContactCount)),
       best_weights_(weights),
       best_contact_(contact_),
       weights_adam_(weights.size()),

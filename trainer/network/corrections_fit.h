@@ -20,7 +20,7 @@ class CorrectionsFit {
                  const Eigen::VectorXd& weights);
 
   // What is tried: the network's weights, and what is added to the logits of the ground's
-  // restitution and friction.
+  // coefficients of contact.
   const Eigen::VectorXd& weights() const { return weights_; }
   const Eigen::VectorXd& contact() const { return contact_; }
   const Eigen::VectorXd& best_weights() const { return best_weights_; }

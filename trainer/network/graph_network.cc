@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "trainer/bodies/logistic.h"
+#include "trainer/bodies/contact_logits.h"
 
 namespace physpring {
 namespace {
@@ -109,7 +109,7 @@ GraphNetwork::GraphNetwork(int latent, std::uint64_t seed) {
     s.message = layout.Linear(latent, latent);
   }
   spring_head_ = layout.TwoLayers(latent, latent, 2, true);
-  system_head_ = layout.TwoLayers(latent, latent, 3, true);
+  system_head_ = layout.TwoLayers(latent, latent, 1 + kContactCount, true);
   first_weights_ = layout.Values();
 }
 
@@ -176,9 +176,7 @@ SpringMassSystem ApplyCorrections(const SpringMassSystem& base, const Features& 
     corrected.dashpot[e] *= std::exp(kMostDashpot / kMostStiffness * springs(e, 1));
   }
   corrected.drag *= std::exp(kMostDrag / kMostContact * system(0, 0));
-  ContactCoefficients& c = corrected.contact;
-  c.restitution = Sigmoid(Logit(c.restitution, 1) + system(0, 1), 1);
-  c.friction = Sigmoid(Logit(c.friction, 2) + system(0, 2), 2);
+  MoveLogits(system.row(0).tail<kContactCount>().transpose(), &corrected.contact.surface);
   return corrected;
 }
 
@@ -189,12 +187,10 @@ void CorrectionsAdjoint(const SpringMassSystem& corrected, const SystemGradient&
   springs_bar->col(0) = gradient.stiffness.cwiseProduct(corrected.stiffness);
   springs_bar->col(1) =
       kMostDashpot / kMostStiffness * gradient.dashpot.cwiseProduct(corrected.dashpot);
-  // forward: y = top / (1 + exp(-x)), dy/dx = y (1 - y / top)
-  const double e = corrected.contact.restitution, mu = corrected.contact.friction;
-  system_bar->resize(1, 3);
-  *system_bar << kMostDrag / kMostContact * gradient.drag * corrected.drag,
-      gradient.contact.surface.restitution * e * (1 - e),
-      gradient.contact.surface.friction * mu * (1 - mu / 2);
+  system_bar->resize(1, 1 + kContactCount);
+  (*system_bar)(0, 0) = kMostDrag / kMostContact * gradient.drag * corrected.drag;
+  system_bar->row(0).tail<kContactCount>() =
+      MoveLogitsAdjoint(corrected.contact.surface, gradient.contact.surface).transpose();
 }
 
 }  // namespace physpring

@@ -7,8 +7,8 @@
 //            (N: layer norm), twice; the same weights at all levels
 //   decoder  one more message step, and heads that read corrections of the Galerkin estimates:
 //            log-stiffness within ln 10 and log-dashpot within ln 4 from e of each spring (plus
-//            what the encoder had: a skip connection), log-drag within ln 4 and the logits of
-//            restitution and friction within 3 from the mean of h
+//            what the encoder had: a skip connection), log-drag within ln 4 and the logits of the
+//            ground's coefficients of contact within 3 from the mean of h
 // Positions are taken along the body's principal axes, each by the body's extent along it.
 // The heads' last layers start at 0, so that the first corrections are 0. Springs have no
 // direction: a feature does not depend on which end is named first. Controllers are nodes with a
@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "trainer/network/weights.h"
-#include "trainer/reduction/galerkin.h"
+#include "trainer/projection/galerkin.h"
 #include "twin/simulator.h"
 #include "twin/spring_mass_system.h"
 
@@ -50,7 +50,7 @@ class GraphNetwork {
 
   struct Corrections {
     Tape::Node springs;  // springs x 2: those of log-stiffness and log-dashpot
-    Tape::Node system;   // 1 x 3: those of log-drag and of the logits of restitution and friction
+    Tape::Node system;   // 1 row: those of log-drag and of the logits of the contact's coefficients
   };
   Corrections Decode(const SpringMassSystem& system, const Encoded& encoded, Tape* tape) const;
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "trainer/reduction/drawn_reduction.h"
+
 namespace physpring {
 namespace {
 
@@ -99,8 +101,24 @@ Eigen::MatrixXd GramianFeatures(const SpringMassSystem& system, int rank) {
   return modes * root.eigenvectors() * scale.asDiagonal();
 }
 
-Assignment GramianAssignment(const SpringMassSystem& system, int nodes, std::uint64_t /*seed*/) {
-  return Agglomerate(SpringGraph(system), GramianFeatures(system, kRank), nodes);
-}
+namespace {
+
+class GramianReduction : public DrawnReduction {
+ public:
+  std::string name() const override { return "gramian"; }
+  std::string help() const override {
+    return "alike in their response to the controllers (controllability Gramian)";
+  }
+
+ private:
+  Assignment Draw(const SpringMassSystem& system, int nodes,
+                  std::uint64_t /*seed*/) const override {
+    return Agglomerate(SpringGraph(system), GramianFeatures(system, kRank), nodes);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Reduction> MakeGramian() { return std::make_unique<GramianReduction>(); }
 
 }  // namespace physpring

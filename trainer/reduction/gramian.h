@@ -15,14 +15,12 @@
 #ifndef PHYSPRING_TRAINER_REDUCTION_GRAMIAN_H_
 #define PHYSPRING_TRAINER_REDUCTION_GRAMIAN_H_
 
-#include "trainer/reduction/assignment.h"
+#include "twin/spring_mass_system.h"
 
 namespace physpring {
 
 // One row a node: the squared distance of two rows is D_ij^2. At most `rank` columns.
 Eigen::MatrixXd GramianFeatures(const SpringMassSystem& system, int rank);
-
-Assignment GramianAssignment(const SpringMassSystem& system, int nodes, std::uint64_t seed);
 
 }  // namespace physpring
 

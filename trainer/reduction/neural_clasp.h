@@ -18,7 +18,7 @@
 #include <random>
 #include <vector>
 
-#include "trainer/reduction/assignment.h"
+#include "trainer/reduction/clusters.h"
 #include "twin/spring_mass_system.h"
 
 namespace physpring {

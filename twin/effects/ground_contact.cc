@@ -30,14 +30,14 @@ class GroundContact : public Effect {
   }
 
   void Change(const Eigen::VectorXd& values, Setting* setting) const override {
-    ContactCoefficients& contact = setting->system.contact;
+    ContactPair<double>& contact = setting->system.contact.surface;
     contact.friction = std::clamp(contact.friction + values[0], 0.0, 2.0);
     contact.restitution = std::clamp(contact.restitution + values[1], 0.0, 1.0);
   }
 
   void ChangeAdjoint(const Eigen::VectorXd& values, const Setting& before, SystemGradient* gradient,
                      Eigen::VectorXd* values_bar) const override {
-    const ContactCoefficients& contact = before.system.contact;
+    const ContactPair<double>& contact = before.system.contact.surface;
     ContactPair<double>& bar = gradient->contact.surface;
     // forward: y = clamp(x + value): nothing passes where it is clamped
     const double friction = contact.friction + values[0];

@@ -43,8 +43,8 @@ long double LinearLoss(const SystemGradient& weights, const SpringMassSystem& sy
   }
   sum += static_cast<long double>(weights.drag) * system.drag;
   const ContactPair<double>& surface = weights.contact.surface;
-  sum += static_cast<long double>(surface.restitution) * system.contact.restitution;
-  return sum + static_cast<long double>(surface.friction) * system.contact.friction;
+  sum += static_cast<long double>(surface.restitution) * system.contact.surface.restitution;
+  return sum + static_cast<long double>(surface.friction) * system.contact.surface.friction;
 }
 
 // The number of classes, from the number of values that the common factors alone have.
@@ -150,8 +150,8 @@ TEST(Parameters, ZeroIsTheBaseSystem) {
   EXPECT_EQ(system.dashpot, base.dashpot);
   EXPECT_EQ(system.rest_length, base.rest_length);
   EXPECT_EQ(system.drag, base.drag);
-  EXPECT_NEAR(system.contact.restitution, base.contact.restitution, 1e-12);
-  EXPECT_NEAR(system.contact.friction, base.contact.friction, 1e-12);
+  EXPECT_NEAR(system.contact.surface.restitution, base.contact.surface.restitution, 1e-12);
+  EXPECT_NEAR(system.contact.surface.friction, base.contact.surface.friction, 1e-12);
 }
 
 TEST(Parameters, EveryEntryHasItsKind) {
@@ -185,8 +185,8 @@ TEST(Parameters, ContactStaysInItsRange) {
   for (double far : {-50.0, 50.0}) {
     const ContactCoefficients contact =
         parameters.Apply(Eigen::VectorXd::Constant(parameters.size(), far)).contact;
-    EXPECT_NEAR(contact.restitution, far > 0 ? 1 : 0, 1e-9);
-    EXPECT_NEAR(contact.friction, far > 0 ? 2 : 0, 1e-9);
+    EXPECT_NEAR(contact.surface.restitution, far > 0 ? 1 : 0, 1e-9);
+    EXPECT_NEAR(contact.surface.friction, far > 0 ? 2 : 0, 1e-9);
   }
 }
 

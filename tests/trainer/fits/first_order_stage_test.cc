@@ -35,7 +35,7 @@ TEST(FirstOrderStage, StartsFromTheGivenSystem) {
   const SpringMassSystem system = System(SwungRope(8, 2));
   const FirstOrderStage stage(system, 10);
   EXPECT_LT((stage.Best().stiffness - system.stiffness).norm(), 1e-12 * system.stiffness.norm());
-  EXPECT_EQ(stage.Best().contact.friction, system.contact.friction);
+  EXPECT_EQ(stage.Best().contact.surface.friction, system.contact.surface.friction);
 }
 
 // 240 steps of 0.001 are enough for the logarithm of 1.2.

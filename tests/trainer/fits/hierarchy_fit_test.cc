@@ -8,14 +8,13 @@
 #include "tests/support/interrupted_work.h"
 #include "tests/support/same_twin.h"
 #include "tests/support/small_twin.h"
-#include "trainer/reduction/galerkin.h"
+#include "trainer/projection/galerkin.h"
+#include "trainer/reduction/registry.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
 
 namespace physpring {
 namespace {
-
-using Reduction = TrainOptions::Reduction;
 
 // Level 0 of a block of 40 particles, and its motion as a recording.
 struct Case {
@@ -41,10 +40,10 @@ struct Case {
 };
 
 TEST(HierarchyFit, MakesLevelsOfTheRatiosWithTheSameMass) {
-  for (Reduction reduction :
-       {Reduction::kLearned, Reduction::kRandom, Reduction::kGramian, Reduction::kKMeans}) {
+  for (const auto& reduction : AllReductions()) {
+    SCOPED_TRACE(reduction->name());
     Case c;
-    c.options.reduction = reduction;
+    c.options.reduction = reduction->name();
     const Twin twin = c.Fit();
     ASSERT_EQ(twin.levels.size(), 3u);
     EXPECT_EQ(twin.levels[1].system.node_count(), 20);
@@ -63,7 +62,7 @@ TEST(HierarchyFit, MakesLevelsOfTheRatiosWithTheSameMass) {
 TEST(HierarchyFit, FitsTheParametersOfALevel) {
   Case c;
   c.options.levels = 2;
-  c.options.reduction = Reduction::kKMeans;
+  c.options.reduction = "kmeans";
   const auto error = [&](const Twin& twin) {
     const RecordingResult result = Evaluate(twin, c.data.recordings[0], {});
     return *MeansOverFrames(result.levels[1].lifted, 1, 8).track.value;
@@ -105,7 +104,7 @@ TEST(HierarchyFit, UpdatesContactStoppedOrNot) {
   Recording& recording = c.data.recordings[0];
   recording.ground = Eigen::Vector4d(0, 0, 1, recording.start.row(2).minCoeff());
   c.options.levels = 2;
-  c.options.reduction = Reduction::kKMeans;
+  c.options.reduction = "kmeans";
   c.options.network.epochs = 4;
   const auto fit = [&](const Work& work) { return c.Fit(work); };
   c.options.network.contact_updates = 0;

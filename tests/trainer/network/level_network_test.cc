@@ -21,7 +21,7 @@ TEST(LevelNetwork, ChangesNothingAtFirst) {
   EXPECT_EQ(level.corrected().stiffness, base.stiffness);
   EXPECT_EQ(level.corrected().dashpot, base.dashpot);
   EXPECT_EQ(level.corrected().drag, base.drag);
-  EXPECT_NEAR(level.corrected().contact.friction, base.contact.friction, 1e-15);
+  EXPECT_NEAR(level.corrected().contact.surface.friction, base.contact.surface.friction, 1e-15);
 }
 
 // Weights -> features of levels 0 to 2 -> corrections -> rollout of level 2 -> lift -> loss.

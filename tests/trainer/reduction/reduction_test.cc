@@ -3,23 +3,46 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <string>
+#include <vector>
 
+#include "tests/support/interrupted_work.h"
 #include "tests/support/random_system.h"
-#include "trainer/reduction/baselines.h"
-#include "trainer/reduction/galerkin.h"
+#include "trainer/projection/galerkin.h"
+#include "trainer/reduction/clusters.h"
 #include "trainer/reduction/gramian.h"
+#include "trainer/reduction/kmeans.h"
+#include "trainer/reduction/registry.h"
+#include "twin/error.h"
 
 namespace physpring {
 namespace {
 
 const Eigen::Vector3d kUp(0, 0, 1);
 
-struct Method {
-  const char* name;
-  Reduction assign;
-};
-const Method kMethods[] = {
-    {"random", RandomAssignment}, {"kmeans", KMeansAssignment}, {"gramian", GramianAssignment}};
+// What a reduction that needs no recordings makes of a system.
+Assignment Assign(const Reduction& reduction, const SpringMassSystem& system, int nodes,
+                  std::uint64_t seed) {
+  Twin twin;
+  twin.levels.push_back({system, {}, 0});
+  TrainOptions options;
+  options.seed = seed;
+  const GraphNetwork network(2, seed);
+  return RunToTheEnd([&](const Work& work) {
+    return reduction
+        .Reduce({twin, nodes, kUp, FitData(), options, network, network.first_weights()}, work)
+        .candidates.at(0);
+  });
+}
+
+// All those.
+std::vector<const Reduction*> Reductions() {
+  std::vector<const Reduction*> reductions;
+  for (const auto& reduction : AllReductions()) {
+    if (!reduction->LearnsFeatures()) reductions.push_back(reduction.get());
+  }
+  return reductions;
+}
 
 // The Laplacian of all nodes, controllers included, in N/m.
 Eigen::MatrixXd LaplacianOf(const SpringMassSystem& system) {
@@ -32,6 +55,15 @@ Eigen::MatrixXd LaplacianOf(const SpringMassSystem& system) {
     laplacian(b, a) -= system.stiffness[e];
   }
   return laplacian;
+}
+
+TEST(Reduction, IsFoundByItsName) {
+  for (const auto& reduction : AllReductions()) {
+    EXPECT_EQ(&GetReduction(reduction->name()), reduction.get());
+    EXPECT_FALSE(reduction->help().empty());
+  }
+  EXPECT_EQ(GetReduction(TrainOptions().reduction).name(), AllReductions()[0]->name());
+  EXPECT_THROW(GetReduction("best"), Error);
 }
 
 // Two bodies that no spring joins.
@@ -72,13 +104,13 @@ void ExpectConnectedAndOnto(const SpringMassSystem& system, const Assignment& as
 }
 
 TEST(Reduction, ClustersAreConnectedOntoAndAsManyAsAskedFor) {
-  for (const Method& method : kMethods) {
+  for (const Reduction* reduction : Reductions()) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const SpringMassSystem system = RandomSystem(60, 2, seed);
       for (int nodes : {60, 36, 24, 18, 5}) {
-        SCOPED_TRACE(method.name + std::to_string(seed) + " to " + std::to_string(nodes));
+        SCOPED_TRACE(reduction->name() + std::to_string(seed) + " to " + std::to_string(nodes));
         const int budget = ClusterBudget(SpringGraph(system), nodes);
-        ExpectConnectedAndOnto(system, method.assign(system, nodes, seed), budget);
+        ExpectConnectedAndOnto(system, Assign(*reduction, system, nodes, seed), budget);
       }
     }
   }
@@ -86,10 +118,10 @@ TEST(Reduction, ClustersAreConnectedOntoAndAsManyAsAskedFor) {
 
 TEST(Reduction, NeverMergesSeparateObjects) {
   const SpringMassSystem system = TwoBodies();
-  for (const Method& method : kMethods) {
+  for (const Reduction* reduction : Reductions()) {
     for (int nodes : {20, 1}) {
-      const Assignment assignment = method.assign(system, nodes, 3);
-      SCOPED_TRACE(method.name);
+      const Assignment assignment = Assign(*reduction, system, nodes, 3);
+      SCOPED_TRACE(reduction->name());
       const std::set<int> left(assignment.begin(), assignment.begin() + 30);
       for (int i = 30; i < 60; ++i) EXPECT_FALSE(left.contains(assignment[i]));
     }
@@ -98,18 +130,21 @@ TEST(Reduction, NeverMergesSeparateObjects) {
 
 TEST(Reduction, IsTheSameForTheSameSeed) {
   const SpringMassSystem system = RandomSystem(60, 2, 4);
-  for (const Method& method : kMethods) {
-    EXPECT_EQ(method.assign(system, 20, 9), method.assign(system, 20, 9)) << method.name;
+  for (const Reduction* reduction : Reductions()) {
+    EXPECT_EQ(Assign(*reduction, system, 20, 9), Assign(*reduction, system, 20, 9))
+        << reduction->name();
   }
-  EXPECT_NE(RandomAssignment(system, 20, 9), RandomAssignment(system, 20, 10));
-  EXPECT_NE(KMeansAssignment(system, 20, 9), KMeansAssignment(system, 20, 10));
+  for (const char* drawn : {"random", "kmeans"}) {
+    const Reduction& reduction = GetReduction(drawn);
+    EXPECT_NE(Assign(reduction, system, 20, 9), Assign(reduction, system, 20, 10)) << drawn;
+  }
 }
 
 TEST(Galerkin, KeepsTheMassAndProjectsTheLaplacian) {
-  for (const Method& method : kMethods) {
-    SCOPED_TRACE(method.name);
+  for (const Reduction* reduction : Reductions()) {
+    SCOPED_TRACE(reduction->name());
     const SpringMassSystem fine = RandomSystem(60, 2, 5);
-    const Assignment assignment = method.assign(fine, 21, 1);
+    const Assignment assignment = Assign(*reduction, fine, 21, 1);
     const SpringMassSystem coarse = Project(fine, assignment, kUp).system;
     coarse.Validate("coarse");
     EXPECT_NEAR(coarse.mass.sum(), fine.mass.sum(), 1e-15 * fine.mass.sum() * 60);

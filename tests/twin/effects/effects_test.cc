@@ -79,8 +79,8 @@ class Effects : public testing::TestWithParam<const Effect*> {
     if (GetParam()->name() == "ground_contact") {
       rollout.environment.ground = Eigen::Vector4d(0, 0, 1, -0.085);
       rollout.velocity.row(2).array() -= 1;
-      rollout.system.contact.restitution = 0.3;
-      rollout.system.contact.friction = 0.02;
+      rollout.system.contact.surface.restitution = 0.3;
+      rollout.system.contact.surface.friction = 0.02;
     }
   }
 

@@ -1,40 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/reduction/baselines.h"
+#include "trainer/reduction/kmeans.h"
 
-#include <algorithm>
 #include <limits>
-#include <numeric>
 #include <random>
-#include <set>
 
+#include "trainer/reduction/drawn_reduction.h"
 #include "twin/neighbours.h"
 #include "twin/uniform.h"
 
 namespace physpring {
 namespace {
-
-// All nodes in random order (Fisher-Yates).
-std::vector<int> Shuffled(int nodes, std::mt19937_64* random) {
-  std::vector<int> order(nodes);
-  std::iota(order.begin(), order.end(), 0);
-  for (int i = nodes - 1; i > 0; --i) {
-    std::swap(order[i], order[static_cast<int>(Uniform(random) * (i + 1))]);
-  }
-  return order;
-}
-
-// The first `count` of `order`, after the first one of each part of the graph.
-std::vector<int> FirstOfEachPartThenOthers(const SpringGraph& graph, const std::vector<int>& order,
-                                           int count) {
-  std::vector<int> chosen, others;
-  std::set<int> parts;
-  for (int node : order) {
-    (parts.insert(graph.part[node]).second ? chosen : others).push_back(node);
-  }
-  const int missing = count - static_cast<int>(chosen.size());
-  chosen.insert(chosen.end(), others.begin(), others.begin() + missing);
-  return chosen;
-}
 
 // k-means++: each next centre is drawn with a probability in proportion to the squared distance
 // from the ones there are.
@@ -85,13 +60,6 @@ Points MoveCentres(const Points& points, Points centres) {
 
 }  // namespace
 
-Assignment RandomAssignment(const SpringMassSystem& system, int nodes, std::uint64_t seed) {
-  const SpringGraph graph(system);
-  std::mt19937_64 random(seed);
-  const std::vector<int> order = Shuffled(graph.node_count(), &random);
-  return GrowFromRoots(graph, FirstOfEachPartThenOthers(graph, order, ClusterBudget(graph, nodes)));
-}
-
 Assignment KMeansAssignment(const SpringMassSystem& system, int nodes, std::uint64_t seed) {
   const SpringGraph graph(system);
   const int count = ClusterBudget(graph, nodes);
@@ -112,5 +80,22 @@ Assignment KMeansAssignment(const SpringMassSystem& system, int nodes, std::uint
   return GrowFromRoots(graph, FirstOfEachPartThenOthers(graph, order, count),
                        NearestCentres(points, centres));
 }
+
+namespace {
+
+class KMeansReduction : public DrawnReduction {
+ public:
+  std::string name() const override { return "kmeans"; }
+  std::string help() const override { return "near to each other in the rest positions"; }
+
+ private:
+  Assignment Draw(const SpringMassSystem& system, int nodes, std::uint64_t seed) const override {
+    return KMeansAssignment(system, nodes, seed);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Reduction> MakeKMeans() { return std::make_unique<KMeansReduction>(); }
 
 }  // namespace physpring

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/reduction/spring_graph.h"
+#include "trainer/projection/spring_graph.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/fits/topology_fit.h"
+#include "trainer/reduction/topology_fit.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include "trainer/motion/lifted_motion.h"
 #include "trainer/motion/track_error.h"
 #include "trainer/network/level_network.h"
+#include "trainer/projection/galerkin.h"
 #include "trainer/solvers/adam.h"
 #include "trainer/solvers/parallel.h"
 
@@ -27,17 +28,15 @@ constexpr double kDiverged = 1e3;  // m, the error of a level that diverges
 
 }  // namespace
 
-TopologyFit::TopologyFit(const FitData& data, const TrainOptions& options, const Twin& twin,
-                         const GraphNetwork& network, const Eigen::VectorXd& weights, int nodes,
-                         const Eigen::Vector3d& up)
-    : options_(options),
-      twin_(twin),
-      network_(network),
-      nodes_(nodes),
-      up_(up),
-      episodes_(FitEpisodes(data, kMostRecordings)),
-      weights_(weights),
-      adam_mean_(Eigen::VectorXd::Zero(weights.size())),
+TopologyFit::TopologyFit(const ReductionTask& task)
+    : options_(task.options),
+      twin_(task.twin),
+      network_(task.network),
+      nodes_(task.nodes),
+      up_(task.up),
+      episodes_(FitEpisodes(task.data, kMostRecordings)),
+      weights_(task.weights),
+      adam_mean_(Eigen::VectorXd::Zero(task.weights.size())),
       adam_mean_square_(adam_mean_) {}
 
 // The mean track error, m, in single precision: for a choice that is enough.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/reduction/galerkin.h"
+#include "trainer/projection/galerkin.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
+
+#include "trainer/projection/spring_graph.h"
 
 namespace physpring {
 namespace {

@@ -1,30 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/reduction/assignment.h"
+#include "trainer/reduction/clusters.h"
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 #include <queue>
 #include <set>
 #include <tuple>
 
+#include "twin/uniform.h"
+
 namespace physpring {
-
-Assignment Renumber(const Assignment& assignment) {
-  std::map<int, int> number;
-  Assignment renumbered;
-  for (int cluster : assignment) {
-    renumbered.push_back(
-        number.try_emplace(cluster, static_cast<int>(number.size())).first->second);
-  }
-  return renumbered;
-}
-
-int CountClusters(const Assignment& assignment) {
-  return 1 + *std::max_element(assignment.begin(), assignment.end());
-}
 
 int ClusterBudget(const SpringGraph& graph, int nodes) {
   return std::clamp(nodes, graph.parts, graph.node_count());
+}
+
+std::vector<int> Shuffled(int nodes, std::mt19937_64* random) {
+  std::vector<int> order(nodes);
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = nodes - 1; i > 0; --i) {
+    std::swap(order[i], order[static_cast<int>(Uniform(random) * (i + 1))]);
+  }
+  return order;
+}
+
+std::vector<int> FirstOfEachPartThenOthers(const SpringGraph& graph, const std::vector<int>& order,
+                                           int count) {
+  std::vector<int> chosen, others;
+  std::set<int> parts;
+  for (int node : order) {
+    (parts.insert(graph.part[node]).second ? chosen : others).push_back(node);
+  }
+  const int missing = count - static_cast<int>(chosen.size());
+  chosen.insert(chosen.end(), others.begin(), others.begin() + missing);
+  return chosen;
 }
 
 Assignment GrowFromRoots(const SpringGraph& graph, const std::vector<int>& roots,

@@ -13,12 +13,12 @@
 // A cluster touches a surface where the lowest of its members would: its contact radius is the
 // greatest of r_i + up . (X_I - x_i).
 // The projection by the identity is the system itself, bit for bit.
-#ifndef PHYSPRING_TRAINER_REDUCTION_GALERKIN_H_
-#define PHYSPRING_TRAINER_REDUCTION_GALERKIN_H_
+#ifndef PHYSPRING_TRAINER_PROJECTION_GALERKIN_H_
+#define PHYSPRING_TRAINER_PROJECTION_GALERKIN_H_
 
 #include <vector>
 
-#include "trainer/reduction/assignment.h"
+#include "trainer/projection/assignment.h"
 #include "twin/spring_mass_system.h"
 
 namespace physpring {
@@ -34,4 +34,4 @@ Projection Project(const SpringMassSystem& fine, const Assignment& assignment,
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_TRAINER_REDUCTION_GALERKIN_H_
+#endif  // PHYSPRING_TRAINER_PROJECTION_GALERKIN_H_

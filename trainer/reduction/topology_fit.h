@@ -5,28 +5,24 @@
 // few draws are ranked by that error, and better ones made more likely than worse ones. The
 // temperature falls from 1 to 0.1 in equal factors. The clusters of least error, among all that
 // were drawn and the ones without noise at the end, are candidates.
-#ifndef PHYSPRING_TRAINER_FITS_TOPOLOGY_FIT_H_
-#define PHYSPRING_TRAINER_FITS_TOPOLOGY_FIT_H_
+#ifndef PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
+#define PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "trainer/data/fit_data.h"
-#include "trainer/data/train_options.h"
 #include "trainer/motion/rollout.h"
-#include "trainer/network/graph_network.h"
 #include "trainer/reduction/neural_clasp.h"
+#include "trainer/reduction/reduction.h"
 #include "twin/twin.h"
 
 namespace physpring {
 
 class TopologyFit {
  public:
-  // Starts from `weights`; data and network must outlive this. `nodes`: of the new level.
-  TopologyFit(const FitData& data, const TrainOptions& options, const Twin& twin,
-              const GraphNetwork& network, const Eigen::VectorXd& weights, int nodes,
-              const Eigen::Vector3d& up);
+  // Starts from the weights of `task`, whose data and network must outlive this.
+  explicit TopologyFit(const ReductionTask& task);
 
   // One iteration, and whether it was the last.
   void Step();
@@ -70,4 +66,4 @@ class TopologyFit {
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_TRAINER_FITS_TOPOLOGY_FIT_H_
+#endif  // PHYSPRING_TRAINER_REDUCTION_TOPOLOGY_FIT_H_

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The free nodes of a system and the springs between them, as neighbour lists.
-#ifndef PHYSPRING_TRAINER_REDUCTION_SPRING_GRAPH_H_
-#define PHYSPRING_TRAINER_REDUCTION_SPRING_GRAPH_H_
+#ifndef PHYSPRING_TRAINER_PROJECTION_SPRING_GRAPH_H_
+#define PHYSPRING_TRAINER_PROJECTION_SPRING_GRAPH_H_
 
 #include <vector>
 
@@ -24,4 +24,4 @@ struct SpringGraph {
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_TRAINER_REDUCTION_SPRING_GRAPH_H_
+#endif  // PHYSPRING_TRAINER_PROJECTION_SPRING_GRAPH_H_
