@@ -15,8 +15,8 @@
 #include <set>
 
 #include "bench/study_recordings.h"
+#include "diagnosis/diagnosis.h"
 #include "trainer/bodies/candidates.h"
-#include "trainer/diagnosis/diagnosis.h"
 #include "twin/error.h"
 
 namespace physpring {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "trainer/diagnosis/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 
 namespace physpring {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "trainer/diagnosis/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 
 namespace physpring {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "trainer/diagnosis/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 #include "twin/effects/effect_picture.h"
 
 namespace physpring {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "trainer/diagnosis/diagnosis.h"
-#include "trainer/diagnosis/diagnosis_recordings.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/diagnosis_recordings.h"
 
 namespace physpring {
 

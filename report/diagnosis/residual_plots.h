@@ -6,8 +6,8 @@
 
 #include <string>
 
+#include "diagnosis/diagnosis.h"
 #include "report/picture/view.h"
-#include "trainer/diagnosis/diagnosis.h"
 
 namespace physpring {
 

@@ -26,8 +26,8 @@ MOST_WORDS_IN_DECISION = 150
 DECISION_PARTS = ("Status", "Decision", "Against", "Measured")
 
 # Where pages of ours are, besides the root itself.
-FOLDERS = ("bench", "cli", "docs", "exporter", "models", "plugin", "python", "rollout", "scripts",
-           "tests", "third_party", "tools", "trainer", "twin")
+FOLDERS = ("bench", "cli", "diagnosis", "docs", "exporter", "models", "plugin", "python", "report",
+           "rollout", "scripts", "tests", "third_party", "tools", "trainer", "twin")
 
 FENCE = re.compile(r"^\s*(```|~~~)")
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?[^)]*\)")

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/acceptance.h"
+
+#include <algorithm>
+
+namespace physpring {
+namespace {
+
+// An error below this, times the noise floor, asks for no more effects than were found.
+constexpr double kExplainedByEffects = 2;
+constexpr Eigen::Index kFreeForm = 20;  // what has more parameters is a free form
+constexpr double kStrong = 0.7, kHopeless = 4;
+constexpr double kLeastScore = 0.05;  // the least score of a trace, as a part of the best one
+constexpr double kNear = 1.25;  // the largest error that is near, times that of the chosen fit
+// Part of the error above the noise that an effect must explain with common factors alone, where
+// single springs could do without it.
+constexpr double kSimplyExplained = 0.8;
+constexpr int kSimplestDraws = 1000;
+
+}  // namespace
+
+bool IsExplained(double error, double noise_floor) { return error < kExplained * noise_floor; }
+
+bool NothingIsLeft(int accepted, double common_error, double accepted_error, double noise_floor) {
+  return accepted == 0 ? IsExplained(common_error, noise_floor)
+                       : accepted_error < kExplainedByEffects * noise_floor;
+}
+
+bool IsFreeForm(Eigen::Index parameters) { return parameters > kFreeForm; }
+
+bool CanBeJudged(Eigen::Index parameters, bool judged_in_between) {
+  return !judged_in_between || !IsFreeForm(parameters);
+}
+
+bool IsSurelyBetter(const BootstrapResult& gain) { return gain.mean > gain.error; }
+
+bool IsAlike(const BootstrapResult& worse) { return worse.mean <= worse.error; }
+
+bool IsStrongLaw(double misfit, double misfit_alone) { return misfit < kStrong * misfit_alone; }
+
+bool IsHopeless(double misfit, double least_misfit) { return misfit > kHopeless * least_misfit; }
+
+bool IsWorthRefit(double score, double best_score) { return score > kLeastScore * best_score; }
+
+bool IsWorthIt(const BootstrapResult& gain, double without, const Threshold& threshold) {
+  const double excess = std::max(0.0, without - threshold.noise_floor);
+  return gain.p < threshold.false_alarm / threshold.tried &&
+         gain.mean > threshold.least_gain * excess &&
+         gain.mean > threshold.least_noise * threshold.noise_floor;
+}
+
+bool IsNear(double error, double chosen_error) { return error < kNear * chosen_error; }
+
+bool IsAccepted(const PairedErrors& common, const PairedErrors& springs, Eigen::Index parameters,
+                const Threshold& threshold) {
+  if (common.with >= common.without) return false;
+  Threshold simply = threshold;
+  simply.least_gain = kSimplyExplained;
+  const bool without_springs =
+      !IsFreeForm(parameters) && IsWorthIt(common.gain, common.without, simply) &&
+      springs.with < springs.without + threshold.least_noise * threshold.noise_floor;
+  return without_springs || IsWorthIt(springs.gain, springs.without, threshold);
+}
+
+std::size_t ChooseSimplest(const std::vector<Scored>& fits, int block, std::uint64_t seed) {
+  const auto least = std::min_element(
+      fits.begin(), fits.end(), [](const Scored& p, const Scored& q) { return p.mean < q.mean; });
+  auto chosen = static_cast<std::size_t>(least - fits.begin());
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i].parameters >= fits[chosen].parameters) continue;
+    const std::vector<double> worse = Difference(fits[i].held, least->held);
+    if (IsAlike(BlockBootstrap(worse, block, kSimplestDraws, seed))) chosen = i;
+  }
+  return chosen;
+}
+
+}  // namespace physpring

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which of many recordings of an object a diagnosis looks at: what a twin lacks shows in a few of
+// them, and each costs as much as the others.
+#ifndef PHYSPRING_DIAGNOSIS_DIAGNOSIS_RECORDINGS_H_
+#define PHYSPRING_DIAGNOSIS_DIAGNOSIS_RECORDINGS_H_
+
+#include <vector>
+
+#include "trainer/data/fit_data.h"
+#include "twin/recording.h"
+
+namespace physpring {
+
+struct DiagnosisRecordings {
+  std::vector<Recording> fit;
+  std::vector<Recording> held_out;  // none: frames of those to fit are held out
+};
+
+// Without recordings to judge by, whole runs of `data` are held out where it has enough of them
+// (HeldBackRuns): a run goes on where the one before it stopped, so parts of it know each other.
+// ChooseRecordings takes at most four on each side, and fewer where they are long: a thousand
+// frames are enough.
+DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_DIAGNOSIS_DIAGNOSIS_RECORDINGS_H_

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search for the effect that a model lacks, together with the body that it belongs to, under an
+// observer whose gain falls (observer.h): with a high gain the misfit is the body's, since what is
+// missing has no time to add up; with a low one it is the effect's. So bodies are chosen first.
+//
+// A body that is fitted further without what it lacks bends to make up for it. A block whose
+// springs yield becomes one of high damping, and no step with the effect leads back from there. So
+// effects are tried twice. First they are tried from the start on, on bodies fitted under the
+// highest gain only, from where a trace says. (One linear step says little of laws of the springs,
+// so these are also tried by two steps from each of their starts.) Then those that a trace ranks
+// first are tried on the bodies fitted further. From the gain of that trace on, all go down
+// together, the better part at a time (successive halving).
+#ifndef PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
+#define PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
+
+#include <vector>
+
+#include "diagnosis/effect_trace.h"
+
+namespace physpring {
+
+// `stage`, here and below: the share of the work, for the journal.
+
+// The bodies that fit best with the effects that are known, the best first. Those that diverge are
+// left out.
+struct FittedBodies {
+  std::vector<Descent> early;  // fitted under the highest gain only; none after an effect was found
+  std::vector<Descent> fitted;  // fitted down to the gain of the trace
+};
+FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
+                       const WorkShare& stage);
+
+// The bodies, fitted without an observer and judged, least held-out error first.
+std::vector<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
+                               std::vector<Descent> bodies);
+
+struct EffectSearchResult {
+  std::vector<EffectTrace> traces;  // one for each effect, on the best body
+  std::vector<Verdict> verdicts;    // those on the best effects, least held-out error first
+};
+
+// `bodies` are fits without the effect. At least one of them is in `fitted`.
+EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
+                                 const std::vector<const Effect*>& effects, const WorkShare& stage);
+
+// The verdict, fitted once more from where it is, under an observer and then without one. What is
+// far from its least may come nearer to it in this way. The same verdict where that fits worse.
+Verdict FollowAgain(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/fitting.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "trainer/bodies/factors.h"
+#include "trainer/bodies/start_system.h"
+#include "trainer/motion/observer.h"
+#include "trainer/solvers/gauss_newton.h"
+#include "trainer/solvers/levenberg_marquardt.h"
+#include "trainer/solvers/parallel.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+// The range of common factors that hardly move (their logarithms). What a training on other
+// recordings found may be wrong by a quarter, but an effect that does the opposite must not undo
+// it.
+constexpr EffectModel::OwnRange kTrusted{0.05, 0.25};
+constexpr int kSpringConjugateGradients = 20;
+constexpr double kEffectScale = 30;  // how strongly effects act beside the springs' own parts
+
+// Single springs are first fitted under an observer with this gain, for so many steps.
+constexpr double kFollowedGain = 0.05;
+constexpr int kFollowedSpringSteps = 3;
+
+// Sub-steps a second at most, as in training: common factors leave room for single springs.
+constexpr double kMostRate = 10000, kMostCommonRate = 5000;
+// A trusted body may take so many times the sub-steps a second that it came with.
+constexpr double kTrustedRoom = 1.25;
+
+// The state of either method as one vector, and back.
+template <class State>
+Eigen::VectorXd Pack(const State& state) {
+  Eigen::VectorXd packed(state.x.size() + 3);
+  packed << state.x, state.damping, state.mean_square, state.converged ? 1 : 0;
+  return packed;
+}
+
+template <class State>
+void Unpack(const Eigen::VectorXd& packed, State* state) {
+  const Eigen::Index size = packed.size() - 3;
+  state->x = packed.head(size);
+  state->damping = packed[size];
+  state->mean_square = packed[size + 1];
+  state->converged = packed[size + 2] != 0;
+}
+
+// The prior of the trainer and, for the effects, the one of Levenberg-Marquardt.
+GaussNewtonOptions Prior(const EffectModel& model) {
+  GaussNewtonOptions options = SpringPrior(model.own());
+  options.conjugate_gradient_steps = kSpringConjugateGradients;
+  const auto append = [&](double value, Eigen::VectorXd* values) {
+    const Eigen::Index own = values->size();
+    values->conservativeResize(model.size());
+    values->tail(model.size() - own).setConstant(value);
+  };
+  append(kDiagnosisPrecision, &options.precision);
+  append(kEffectScale, &options.scale);
+  return options;
+}
+
+}  // namespace
+
+void ScorePrediction(const std::vector<SplitRecording>& recordings,
+                     const std::vector<std::vector<Points>>& predicted, Verdict* verdict) {
+  verdict->held = TrackOf(recordings, predicted, SplitRecording::Use::kHeld);
+  verdict->track = {Mean(TrackOf(recordings, predicted, SplitRecording::Use::kFit)),
+                    Mean(verdict->held)};
+}
+
+PieceKey KeyOf(const std::string& kind, const Hypothesis& hypothesis) {
+  PieceKey key(kind);
+  return key.Add(static_cast<double>(hypothesis.body))
+      .Add(hypothesis.start_substeps)
+      .Add(hypothesis.effects);
+}
+
+Fitting::Fitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings,
+                 int threads, Journal* journal)
+    : bodies_(std::move(bodies)),
+      recordings_(std::move(recordings)),
+      threads_(threads),
+      journal_(journal) {
+  for (const SplitRecording& split : recordings_) followed_.push_back(DropHeldOut(split));
+}
+
+double Fitting::difference() const { return FactorDifference(*recordings_[0].recording); }
+
+SpringMassSystem Fitting::Base(std::size_t body, double start_substeps) const {
+  SpringMassSystem base = bodies_[body].base;
+  if (!bodies_[body].trusted) {
+    ScaleToSubsteps(1 / recordings_[0].recording->fps, start_substeps, kStepSafety, &base);
+  }
+  return base;
+}
+
+Descent Fitting::Begin(std::size_t body, const std::vector<EffectValues>& effects) const {
+  Descent best;
+  for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
+    Descent descent{{body, effects, substeps}, {}};
+    const EffectModel model = Model(descent.hypothesis);
+    descent.x = Eigen::VectorXd::Zero(model.size());
+    EffectProblem problem = MakeProblem(model, bodies_[body], kObserverGains[0], 1);
+    if (!problem.FixSubsteps(descent.x)) continue;
+    const auto r = problem.Residuals(descent.x);
+    if (!r || r->squaredNorm() >= best.misfit) continue;
+    descent.misfit = r->squaredNorm();
+    best = std::move(descent);
+    if (bodies_[body].trusted) break;
+  }
+  return best;
+}
+
+EffectModel Fitting::Model(const Hypothesis& hypothesis) const {
+  const DiagnosisBody& body = bodies_[hypothesis.body];
+  return EffectModel(
+      CommonFactors(Base(hypothesis.body, hypothesis.start_substeps), *recordings_[0].recording),
+      body.trusted ? kTrusted : EffectModel::OwnRange{}, hypothesis.effects);
+}
+
+EffectProblem Fitting::Problem(const Hypothesis& hypothesis, double gain) const {
+  return MakeProblem(Model(hypothesis), bodies_[hypothesis.body], gain, 1);
+}
+
+EffectProblem Fitting::MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
+                                   int threads) const {
+  EffectProblem::Options options;
+  options.threads = threads;
+  options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
+  options.least_rate = kLeastDiagnosisRate;
+  options.most_rate = options.limit_dashpots ? kMostCommonRate : kMostRate;
+  if (body.trusted) {
+    const double own = DiagnosisRate(body.base, recordings_[0].recording->fps);
+    options.most_rate = std::max(options.most_rate, kTrustedRoom * own);
+  }
+  options.rollout.controller_velocity = body.controller_velocity;
+  // an observer is for finding the way, which needs fewer digits
+  options.rollout.single_precision = gain > 0;
+  options.difference =
+      DirectionDifference(*recordings_[0].recording, options.rollout.single_precision);
+  options.rollout.observer_gain = gain;
+  return EffectProblem(model, gain > 0 ? followed_ : recordings_, options);
+}
+
+bool Fitting::DescendOne(double gain, int steps, int threads, Descent* descent) const {
+  EffectProblem problem = Problem(descent->hypothesis, gain);
+  LevenbergMarquardtOptions options;
+  options.difference = difference();
+  options.threads = threads;
+  LevenbergMarquardtState state;
+  state.x = descent->x;
+  state.damping = descent->damping;
+  for (int step = 0; step < steps && !state.converged; ++step) {
+    PieceKey key = KeyOf("Levenberg-Marquardt", descent->hypothesis);
+    const Eigen::VectorXd after = journal().Get(key.Add(gain).Add(state.x).Add(state.damping), [&] {
+      if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
+      return Pack(LevenbergMarquardtStep(
+          [&](const Eigen::VectorXd& at) { return problem.Residuals(at); }, state, options));
+    });
+    if (after.size() == 0) return false;
+    Unpack(after, &state);
+  }
+  if (!(state.mean_square > 0)) return false;
+  descent->x = state.x;
+  descent->damping = state.damping;
+  descent->misfit = state.mean_square;
+  descent->converged = state.converged;
+  return true;
+}
+
+void Fitting::Descend(double gain, int steps, std::vector<Descent>* descents) const {
+  const auto count = static_cast<int>(descents->size());
+  const int each = std::max(1, threads_ / std::max(1, count));
+  std::vector<char> good(descents->size(), 0);
+  ParallelFor(count, threads_, [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    good[n] = DescendOne(gain, steps, each, &(*descents)[n]) ? 1 : 0;
+  });
+  std::vector<Descent> kept;
+  for (std::size_t n = 0; n < descents->size(); ++n) {
+    if (good[n] != 0) kept.push_back(std::move((*descents)[n]));
+  }
+  *descents = std::move(kept);
+}
+
+std::optional<Verdict> Fitting::JudgeAt(EffectProblem* problem, const Eigen::VectorXd& x,
+                                        const Descent& descent) const {
+  if (!problem->FixSubsteps(x)) return {};
+  const auto predicted = problem->Predict(x);
+  if (!predicted) return {};
+  Verdict verdict;
+  verdict.descent = descent;
+  verdict.system = problem->SystemAt(x);
+  verdict.controller_velocity = bodies_[descent.hypothesis.body].controller_velocity;
+  ScorePrediction(recordings_, *predicted, &verdict);
+  return verdict;
+}
+
+std::optional<Verdict> Fitting::Judge(const Descent& descent) const {
+  EffectProblem problem = Problem(descent.hypothesis, 0);
+  return JudgeAt(&problem, descent.x, descent);
+}
+
+std::vector<Verdict> Fitting::JudgeAll(const std::vector<Descent>& descents) const {
+  std::vector<std::optional<Verdict>> judged(descents.size());
+  ParallelFor(static_cast<int>(descents.size()), threads_, [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    judged[n] = Judge(descents[n]);
+  });
+  std::vector<Verdict> verdicts;
+  for (std::optional<Verdict>& verdict : judged) {
+    if (verdict) verdicts.push_back(std::move(*verdict));
+  }
+  return verdicts;
+}
+
+Verdict Fitting::RefitSprings(int steps, const Verdict& verdict) const {
+  assert(verdict.provenance == Verdict::Provenance::kCommonFactors);
+  const Hypothesis& hypothesis = verdict.descent.hypothesis;
+  const DiagnosisBody& body = bodies_[hypothesis.body];
+  SpringMassSystem base = verdict.system;
+  base.effects.clear();
+  const EffectModel model(SpringFactors(base, *recordings_[0].recording), {},
+                          verdict.system.effects);
+  const GaussNewtonOptions prior = Prior(model);
+  GaussNewtonState state;
+  state.x = Eigen::VectorXd::Zero(model.size());
+  for (const bool followed : {true, false}) {
+    const double gain = followed ? kFollowedGain : 0;
+    EffectProblem problem = MakeProblem(model, body, gain, threads_);
+    state.damping = 1e-3;
+    state.converged = false;
+    int slow = 0;
+    for (int step = 0; step < (followed ? kFollowedSpringSteps : steps); ++step) {
+      const GaussNewtonState before = state;
+      PieceKey key = KeyOf("Gauss-Newton", hypothesis);
+      const Eigen::VectorXd after =
+          journal().Get(key.Add(verdict.descent.x).Add(gain).Add(state.x).Add(state.damping),
+                        [&] { return Pack(GaussNewtonStep(&problem, state, prior)); });
+      Unpack(after, &state);
+      slow = step > 0 && state.mean_square > kSlowStep * before.mean_square ? slow + 1 : 0;
+      if (slow == kMostSlowSteps || IsStuck(before, state, step == 0)) break;
+    }
+  }
+  EffectProblem problem = MakeProblem(model, body, 0, threads_);
+  std::optional<Verdict> refitted = JudgeAt(&problem, state.x, verdict.descent);
+  if (!refitted) return verdict;
+  refitted->provenance = Verdict::Provenance::kSprings;
+  return *refitted;
+}
+
+}  // namespace physpring

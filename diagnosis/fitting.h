@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fits of hypotheses (hypothesis.h): the body's common factors and the effects' parameters
+// together, by Levenberg-Marquardt, and single springs besides, by Gauss-Newton.
+#ifndef PHYSPRING_DIAGNOSIS_FITTING_H_
+#define PHYSPRING_DIAGNOSIS_FITTING_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis_body.h"
+#include "diagnosis/hypothesis.h"
+#include "trainer/journal/journal.h"
+
+namespace physpring {
+
+// Sets `held` and `track` of the verdict from the particles' predicted positions in each recording.
+void ScorePrediction(const std::vector<SplitRecording>& recordings,
+                     const std::vector<std::vector<Points>>& predicted, Verdict* verdict);
+
+// What a piece of work with this hypothesis depends on, besides where its descent is.
+PieceKey KeyOf(const std::string& kind, const Hypothesis& hypothesis);
+
+class Fitting {
+ public:
+  // `journal` (it must outlive this) keeps what is worked out; without one nothing is kept.
+  Fitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings, int threads,
+          Journal* journal = nullptr);
+  Fitting(const Fitting&) = delete;
+  Fitting& operator=(const Fitting&) = delete;
+
+  const std::vector<DiagnosisBody>& bodies() const { return bodies_; }
+  const std::vector<SplitRecording>& recordings() const { return recordings_; }
+  int threads() const { return threads_; }
+  Journal& journal() const { return journal_ ? *journal_ : *own_journal_; }
+  double difference() const;  // step of forward differences; longer where contacts jump
+
+  // A descent with that body, not fitted yet. It begins with the stiffness that predicts best under
+  // the highest gain. Its x is empty if the motion diverges at each stiffness.
+  Descent Begin(std::size_t body, const std::vector<EffectValues>& effects) const;
+
+  EffectModel Model(const Hypothesis& hypothesis) const;
+  // The problem of fitting a hypothesis under an observer of this gain, which sees the fit frames
+  // only.
+  EffectProblem Problem(const Hypothesis& hypothesis, double gain) const;
+
+  // Makes at most `steps` steps of Levenberg-Marquardt for each of the descents, on several
+  // threads. Those that cannot be evaluated are taken out.
+  void Descend(double gain, int steps, std::vector<Descent>* descents) const;
+
+  // Predicts everything and judges it; nothing if a motion diverges.
+  std::optional<Verdict> Judge(const Descent& descent) const;
+  // The verdicts on the descents, in their order. Those that diverge are left out.
+  std::vector<Verdict> JudgeAll(const std::vector<Descent>& descents) const;
+
+  // Fits single springs, too, for a verdict from common factors: under an observer, and then for at
+  // most `steps` steps without one. Returns the same verdict if that diverges.
+  Verdict RefitSprings(int steps, const Verdict& verdict) const;
+
+ private:
+  SpringMassSystem Base(std::size_t body, double start_substeps) const;
+  // The verdict on the system at x, which comes from that descent.
+  std::optional<Verdict> JudgeAt(EffectProblem* problem, const Eigen::VectorXd& x,
+                                 const Descent& descent) const;
+  EffectProblem MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
+                            int threads) const;
+  bool DescendOne(double gain, int steps, int threads, Descent* descent) const;
+
+  std::vector<DiagnosisBody> bodies_;
+  std::vector<SplitRecording> recordings_;
+  std::vector<SplitRecording> followed_;  // the same with the fit frames only
+  int threads_;
+  Journal* journal_;
+  std::unique_ptr<Journal> own_journal_ = std::make_unique<Journal>();
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_DIAGNOSIS_FITTING_H_

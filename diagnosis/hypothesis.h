@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The three nouns of a diagnosis.
+//   Hypothesis   what may be the case: one of the bodies, with these effects
+//   Descent      where its fit is: common factors and the effects' values
+//   Verdict      a spring-mass system that was judged: its errors, and where it comes from
+#ifndef PHYSPRING_DIAGNOSIS_HYPOTHESIS_H_
+#define PHYSPRING_DIAGNOSIS_HYPOTHESIS_H_
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "diagnosis/effect_problem.h"
+
+namespace physpring {
+
+struct Hypothesis {
+  std::size_t body = 0;               // an index of Fitting::bodies
+  std::vector<EffectValues> effects;  // as the search begins with them; the new one is last
+  double start_substeps = 0;  // the body's springs begin as stiff as so many sub-steps a frame
+
+  // How many parameters all effects have.
+  Eigen::Index ParameterCount() const {
+    Eigen::Index count = 0;
+    for (const EffectValues& effect : effects) count += effect.values.size();
+    return count;
+  }
+  // How many the new effect has, and its name; 0 and empty without any.
+  Eigen::Index NewParameters() const { return effects.empty() ? 0 : effects.back().values.size(); }
+  std::string NewEffect() const { return effects.empty() ? "" : effects.back().name; }
+};
+
+struct Descent {
+  Hypothesis hypothesis;
+  Eigen::VectorXd x;  // common factors, then effects (effect_model.h); empty: no motion is stable
+  // The mean of r^2, m^2, when the descent was last fitted.
+  double misfit = std::numeric_limits<double>::infinity();
+  double damping = 1e-2;
+  bool converged = false;
+};
+
+// Mean track errors, m; NaN where there are no such frames.
+struct TrackPair {
+  double fit, held;
+};
+
+struct Verdict {
+  enum class Provenance { kCommonFactors, kSprings, kTraining };
+  Provenance provenance = Provenance::kCommonFactors;
+  Descent descent;  // what it comes from; a training has none
+  SpringMassSystem system;
+  bool controller_velocity = true;  // whether dashpots feel that
+  FrameTrack held;
+  TrackPair track{};
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_DIAGNOSIS_HYPOTHESIS_H_
