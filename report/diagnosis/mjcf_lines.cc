@@ -47,15 +47,15 @@ std::vector<std::string> SettingLines(const Setting& before, const Setting& afte
         fmt::format("<spatial springlength=\"{:.4g}\" .../>  <!-- spring {}, was {:.4g} -->",
                     q.rest_length[e], e, p.rest_length[e]));
   }
-  if (p.contact.friction != q.contact.friction) {
+  const ContactPair<double>&was = p.contact.surface, &is = q.contact.surface;
+  if (was.friction != is.friction) {
     lines.push_back(fmt::format("<geom friction=\"{:.4g} 0 0\" .../>  <!-- was {:.4g} -->",
-                                q.contact.friction, p.contact.friction));
+                                is.friction, was.friction));
   }
-  if (p.contact.restitution != q.contact.restitution) {
-    lines.push_back(
-        fmt::format("<config key=\"restitution\" value=\"{:.4g}\"/>  <!-- was {:.4g} "
-                    "-->",
-                    q.contact.restitution, p.contact.restitution));
+  for (const auto& c : kContactCoefficients<double>) {
+    if (was.*c.member == is.*c.member || c.member == &ContactPair<double>::friction) continue;
+    lines.push_back(fmt::format("<config key=\"{}\" value=\"{:.4g}\"/>  <!-- was {:.4g} -->",
+                                c.name, is.*c.member, was.*c.member));
   }
   return lines;
 }

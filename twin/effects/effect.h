@@ -9,7 +9,7 @@
 //   add tension to the springs in each sub-step, in the same way (spring_tension.h),
 //   add moments where the body bends, in the same way (bend_effect.h).
 // Each has its adjoint. Values of 0 change nothing. Forces on nodes are computed in double
-// precision also where the simulator is not. twin/effects/registry.h lists the effects.
+// precision also where the simulator is not. twin/effects/list.h lists the effects.
 #ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_H_
 #define PHYSPRING_TWIN_EFFECTS_EFFECT_H_
 

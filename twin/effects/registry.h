@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The effects there are. To add one: its file, and its line in registry.cc.
+// The effects there are. To add one: its file, and its line in list.h.
 #ifndef PHYSPRING_TWIN_EFFECTS_REGISTRY_H_
 #define PHYSPRING_TWIN_EFFECTS_REGISTRY_H_
 
