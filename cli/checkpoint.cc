@@ -100,7 +100,7 @@ void Checkpoint::ExpectSameTraining(const Twin& twin) const {
 
 std::optional<Twin> Checkpoint::Resume(Journal* journal) const {
   if (!Exists(path_)) return {};
-  const Twin twin = ReadTwin(path_);
+  Twin twin = ReadTwin(path_);
   ExpectSameTraining(twin);
   const auto code = twin.training_state.find(kCode);
   if (code == twin.training_state.end() || code->second.ToText() != kTrainingCode) {

@@ -95,7 +95,7 @@ Eigen::Index NewParametersOf(const Verdict& verdict) {
 }
 
 // The second verdict only if it predicts the held-out frames better.
-const Verdict& Better(const Verdict& verdict, const Verdict& offered) {
+Verdict Better(const Verdict& verdict, const Verdict& offered) {
   return offered.track.held < verdict.track.held ? offered : verdict;
 }
 

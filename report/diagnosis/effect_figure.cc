@@ -123,7 +123,8 @@ Plot::Curve RangeCurve(const std::vector<ValueRange>& ranges, int first, int cou
                        const Scale& scale) {
   Plot::Curve curve;
   for (int k = 0; k < count; ++k) {
-    const ValueRange& range = ranges[static_cast<std::size_t>(first + k)];
+    const ValueRange& range =
+        ranges.at(static_cast<std::size_t>(first) + static_cast<std::size_t>(k));
     curve.x.push_back(k * step);
     curve.y.push_back(scale.factor * range.value);
     curve.error.push_back(scale.factor * (range.high - range.low) / 2);

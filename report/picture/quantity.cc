@@ -53,7 +53,7 @@ Scale ScaleFor(const std::string& unit, double largest) {
   if (unit == "kg/m") return {1e3, "g/m"};
   if (size >= 0.1) return {1, unit};
   if (unit == "s") return {1e3, "ms"};
-  if (!unit.starts_with("N")) return {1, unit};
+  if (!unit.starts_with('N')) return {1, unit};
   return size < 1e-4 ? Scale{1e6, "µ" + unit} : Scale{1e3, "m" + unit};
 }
 

@@ -22,9 +22,9 @@ class UniformForce : public SceneEffect {
                  const mjModel& model, mjData* data) const override {
     const Eigen::Vector3d amplitude = amounts.Vector("force", "n");
     const double period = amounts.At("period_s");
-    const Eigen::Vector3d force =
+    Eigen::Vector3d force =
         period > 0 ? std::sin(2 * std::numbers::pi * time / period) * amplitude : amplitude;
-    AddToBodies(body, model, data, [&](int) { return force; });
+    AddToBodies(body, model, data, [&](int) -> Eigen::Vector3d { return force; });
   }
   EffectAmounts Trial(const EffectTrial& trial) const override {
     EffectAmounts amounts;

@@ -26,7 +26,7 @@ struct BodyChoice {
 
 // Computes in single precision: for a choice that is enough. Throws Error where the recordings give
 // no body, and if the motion diverges with the start values of every candidate.
-BodyChoice ChooseBody(const FitData& data, const TrainOptions& options, const Work& work);
+BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work& work);
 
 }  // namespace physpring
 
