@@ -34,6 +34,12 @@ Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::str
     result.files[level.scene] = FormatScene(level.plan, level.model);
     result.levels.push_back(std::move(level));
   }
+  if (const auto ground = GroundOf(result.levels[0].plan); ground && !twin.ground.known) {
+    result.warnings.push_back(
+        fmt::format("the twin does not say what ground it was trained with (a file of an older "
+                    "program): the scenes get a floor at {:.4g} m; train it again to know",
+                    (*ground)[3]));
+  }
   result.files["README.md"] = FormatReadme(result.levels, command);
   return result;
 }

@@ -64,6 +64,7 @@ Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool 
   twin.controller_velocity = controller_velocity;
   twin.fps = recording.fps;
   twin.gravity = recording.gravity;
+  twin.ground = {.known = true, .plane = recording.ground};
   twin.seed = seed;
   return twin;
 }
