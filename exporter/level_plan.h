@@ -56,9 +56,9 @@ struct LevelPlan {
 };
 
 // The sub-step is the one that the trainer and `physpring eval` use: 0.7 of the stability bound's
-// (kStepSafety), never longer than in training, and a frame is a whole number of them; or, without the plugin,
-// options.timestep. Throws Error if the level does not exist, if that time step is not stable, or
-// if the name has characters other than letters, digits and "_.-".
+// (kStepSafety), never longer than in training, and a frame is a whole number of them; or, without
+// the plugin, options.timestep. Throws Error if the level does not exist, if that time step is not
+// stable, or if the name has characters other than letters, digits and "_.-".
 LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options);
 
 }  // namespace physpring

@@ -325,7 +325,7 @@ TEST_F(Eval, ShowsTheMotionInTheFilm) {
   // distances are the same in the film's turned frame, up to a step for each end
   const double step = film["step"];
   const auto predicted = [&](int frame, int node) -> Eigen::Vector3d {
-    return step * DecodeTriple(film["levels"][0]["positions"], frame * 40 + node);
+    return step * DecodeTriple(film["layers"][0]["positions"], frame * 40 + node);
   };
   const double expected = (recording_.points[19].col(31) - recording_.points[4].col(2)).norm();
   EXPECT_NEAR((predicted(19, 31) - predicted(4, 2)).norm(), expected, 2 * step);

@@ -57,7 +57,7 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
 Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool controller_velocity,
                std::uint64_t seed) {
   Twin twin;
-  twin.levels.push_back({.system = system});
+  twin.levels.emplace_back().system = system;
   twin.points = recording.point_count();
   twin.interior = recording.interior_count();
   twin.order = recording.order;

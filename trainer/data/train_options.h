@@ -38,7 +38,7 @@ struct TrainOptions {
   std::vector<double> ratios = {0.6, 0.4, 0.3};
   std::string reduction = "learned";  // the name of one in reduction/registry.h
 
-  // The graph network; the paper's values.
+  // The graph network; values of the paper (PhySPRING, arXiv 2605.07687).
   struct Network {
     int latent = 128;
     int epochs = 20;  // of each level

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // An observer: it keeps a rollout near the measured points, so that a model can be fitted by what
 // it gets wrong within a few frames, whatever happened before. After each frame, a point that is
-// seen at m and predicted at x, T being the time of a frame, is corrected by
-//   r = m - x,   x <- x + a r,   v <- v + b r / T,   b = a^2 / (2 - a)
+// measured at p and predicted at x is corrected, at `fps` frames a second, by
+//   r = p - x,   x <- x + a r,   v <- v + b fps r,   b = a^2 / (2 - a)
 // the alpha-beta filter, with Benedict and Bordner's choice of b (IRE Trans. Autom. Control 7,
 // 1962). With gain a the model is on its own for about 1 / a frames. The residuals of a fit are
 // taken before the correction: the prediction errors of system identification (Ljung, System
@@ -19,7 +19,7 @@
 
 namespace physpring {
 
-// The gains of a fit, one after the other.
+// The gains of fits, one after the other. Many fits take a part of them (docs/physics.md).
 inline constexpr std::array<double, 5> kObserverGains = {0.5, 0.2, 0.1, 0.05, 0};
 inline constexpr int kLastGain = static_cast<int>(kObserverGains.size()) - 1;
 

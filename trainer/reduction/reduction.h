@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A reduction chooses which nodes of a level become one node of the next coarser level. To add one:
-// its file in this folder, and its line in registry.cc. Most only look at the level and derive from
-// DrawnReduction (drawn_reduction.h). One that learns does so step by step, as work that a journal
-// keeps (journal/work.h).
+// its file in this folder, and its lines in registry.cc and trainer/CMakeLists.txt. Most only look
+// at the level and derive from DrawnReduction (drawn_reduction.h). One that learns does so step by
+// step, as work that a journal keeps (journal/work.h).
 #ifndef PHYSPRING_TRAINER_REDUCTION_REDUCTION_H_
 #define PHYSPRING_TRAINER_REDUCTION_REDUCTION_H_
 
