@@ -6,6 +6,7 @@
 #include "exporter/level_model.h"
 #include "exporter/readme.h"
 #include "exporter/scene.h"
+#include "twin/ground.h"
 
 namespace physpring {
 namespace {
@@ -34,11 +35,11 @@ Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::str
     result.files[level.scene] = FormatScene(level.plan, level.model);
     result.levels.push_back(std::move(level));
   }
-  if (const auto ground = GroundOf(result.levels[0].plan); ground && !twin.ground.known) {
+  if (!twin.ground.known) {
     result.warnings.push_back(
         fmt::format("the twin does not say what ground it was trained with (a file of an older "
-                    "program): the scenes get a floor at {:.4g} m; train it again to know",
-                    (*ground)[3]));
+                    "program): the scenes get the floor {}; train it again to know",
+                    DescribeGround(GroundOf(result.levels[0].plan))));
   }
   result.files["README.md"] = FormatReadme(result.levels, command);
   return result;

@@ -7,6 +7,7 @@
 #include "exporter/xml.h"
 #include "twin/cone_name.h"
 #include "twin/contact_words.h"
+#include "twin/ground.h"
 
 namespace physpring {
 namespace {
@@ -88,10 +89,10 @@ std::string DescribeControllers(const LevelPlan& plan) {
 std::string DescribeGround(const LevelPlan& plan) {
   const std::optional<Eigen::Vector4d> ground = GroundOf(plan);
   if (!ground) {
-    return "The twin was trained without a ground, so the scenes have none and a free object falls.";
+    return "The twin was trained without a ground, so the scenes have none and a free object "
+           "falls.";
   }
-  const std::string plane = fmt::format("({:.4g}, {:.4g}, {:.4g}) . x = {:.4g} m", (*ground)[0],
-                                        (*ground)[1], (*ground)[2], (*ground)[3]);
+  const std::string plane = DescribeGround(ground);
   if (plan.twin->ground.known) {
     return "The floor of the scenes, " + plane + ", is the ground that the twin was trained with.";
   }
