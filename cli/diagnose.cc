@@ -20,6 +20,7 @@
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
+#include "cli/warnings.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/diagnosis_recordings.h"
 #include "report/diagnosis/page.h"
@@ -29,6 +30,7 @@
 #include "twin/atomic_file.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
+#include "twin/numbering.h"
 
 namespace physpring {
 namespace {
@@ -150,11 +152,18 @@ void Run(const DiagnoseArguments& arguments) {
   const Twin twin = ReadTwin(arguments.twin);
   const auto fit = ListRecordings(arguments.recordings, Role::kFit);
   const auto held_out = ListRecordings(arguments.held_out, Role::kHeldout);
-  const FitData data = ReadFitData(fit);
+  FitData data = ReadFitData(fit);
   std::vector<Recording> judged;
   for (const RecordingEntry& entry : held_out) {
     judged.push_back(ReadRecording(entry.path));
     ExpectNotFitted(judged.back(), entry.path, data.recordings);
+  }
+  for (std::vector<Recording>* recordings : {&data.recordings, &judged}) {
+    for (Recording& recording : *recordings) {
+      const std::string odd = OddNumbering(twin, recording);
+      if (!odd.empty()) recording.warnings.push_back(recording.name + ": " + odd);
+    }
+    PrintWarnings(WarningsOf(*recordings));
   }
   const DiagnosisRecordings chosen = ChooseRecordings(data, judged);
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);

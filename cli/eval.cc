@@ -12,12 +12,14 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/warnings.h"
 #include "report/eval_report.h"
 #include "report/evaluation.h"
 #include "report/picture/page.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/atomic_file.h"
 #include "twin/dataset.h"
+#include "twin/numbering.h"
 
 namespace physpring {
 namespace {
@@ -44,6 +46,8 @@ EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
   evaluated.path = entry.path;
   evaluated.recording = ReadRecording(entry.path);
   evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
+  const std::string odd = OddNumbering(twin, evaluated.recording);
+  if (!odd.empty()) evaluated.recording.warnings.push_back(entry.path + ": " + odd);
   evaluated.result = Evaluate(twin, evaluated.recording, options);
   return evaluated;
 }
@@ -81,11 +85,12 @@ void Run(const EvalArguments& arguments) {
     evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], options);
   });
 
+  std::vector<std::string> warnings;
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {
-    for (const std::string& warning : evaluated.recording.warnings) {
-      fmt::print(stderr, "warning: {}\n", warning);
-    }
+    const std::vector<std::string>& own = evaluated.recording.warnings;
+    warnings.insert(warnings.end(), own.begin(), own.end());
   }
+  PrintWarnings(warnings);
   fmt::print("{}", FormatTables(evaluation));
   WarnIfUseless(evaluation);
   if (!arguments.trajectory.empty()) WriteTrajectories(evaluation, arguments.trajectory);

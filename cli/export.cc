@@ -103,6 +103,9 @@ void Run(const ExportArguments& arguments, const std::string& command_line) {
   const Twin twin = free ? WithoutControllers(read) : read;
   const Export result = ExportTwin(twin, arguments.options, command_line);
   WriteFolder(arguments.output, result.files, arguments.force);
+  for (const std::string& warning : result.warnings) {
+    fmt::print(stderr, "warning: {}: {}\n", arguments.twin, warning);
+  }
   fmt::print("{}\n", arguments.output);
   for (const ExportedLevel& level : result.levels) fmt::print("{}", DescribeLevel(level));
 }

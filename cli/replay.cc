@@ -15,6 +15,7 @@
 #include "cli/output_files.h"
 #include "cli/picture_words.h"
 #include "cli/progress.h"
+#include "cli/warnings.h"
 #include "report/eval_report.h"
 #include "rollout/controller_replay.h"
 #include "rollout/plugin_library.h"
@@ -128,9 +129,7 @@ void Run(const ReplayArguments& arguments) {
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
   const Recording recording = ReadRecording(arguments.recording);
-  for (const std::string& warning : recording.warnings) {
-    fmt::print(stderr, "warning: {}\n", warning);
-  }
+  PrintWarnings(recording.warnings);
   ControllerReplay replay;
   try {
     replay = Replay(arguments, recording);
@@ -138,7 +137,7 @@ void Run(const ReplayArguments& arguments) {
     if (missing.empty()) throw;
     throw Error(fmt::format("{}; {}", error.what(), missing));
   }
-  for (const std::string& warning : replay.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  PrintWarnings(replay.warnings);
   const ReplayErrors errors = ErrorsOf(replay, recording);
   PrintTable(arguments, recording, replay, errors);
   if (!arguments.json.empty()) WriteReport(arguments, recording, replay, errors);

@@ -22,6 +22,7 @@
 #include "cli/resume_options.h"
 #include "cli/train_options.h"
 #include "cli/training.h"
+#include "cli/warnings.h"
 #include "trainer/data/fit_data.h"
 #include "trainer/reduction/registry.h"
 #include "twin/dataset.h"
@@ -94,10 +95,8 @@ void OpenLog(const std::string& path, bool append) {
 
 // To the user and to the log.
 void Warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    fmt::print(stderr, "warning: {}\n", warning);
-    spdlog::info("warning: {}", warning);
-  }
+  PrintWarnings(warnings);
+  for (const std::string& warning : JoinAlike(warnings)) spdlog::info("warning: {}", warning);
 }
 
 // A twin that was trained on the same recordings.
@@ -163,7 +162,7 @@ void Run(const TrainArguments& arguments) {
   checkpoint.ExpectReplaceable(arguments.run.resume || arguments.run.force);
   ExpectWritable(arguments, entries);
   OpenLog(arguments.log, arguments.run.resume);
-  for (const Recording& recording : data.recordings) Warn(recording.warnings);
+  Warn(WarningsOf(data.recordings));
 
   const TrainingRun run = RunTraining({data, options, dense}, checkpoint, arguments.run.resume,
                                       arguments.run.checkpoint_interval);

@@ -6,6 +6,7 @@
 #include "exporter/level_model.h"
 #include "exporter/readme.h"
 #include "exporter/scene.h"
+#include "twin/ground.h"
 
 namespace physpring {
 namespace {
@@ -33,6 +34,12 @@ Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::str
     result.files[level.model] = FormatLevel(level.plan, level.flexes, picture);
     result.files[level.scene] = FormatScene(level.plan, level.model);
     result.levels.push_back(std::move(level));
+  }
+  if (!twin.ground.known) {
+    result.warnings.push_back(
+        fmt::format("the twin does not say what ground it was trained with (a file of an older "
+                    "program): the scenes get the floor {}; train it again to know",
+                    DescribeGround(GroundOf(result.levels[0].plan))));
   }
   result.files["README.md"] = FormatReadme(result.levels, command);
   return result;

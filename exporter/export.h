@@ -24,6 +24,7 @@ struct ExportedLevel {
 struct Export {
   std::vector<ExportedLevel> levels;
   std::map<std::string, std::string> files;  // name in the folder -> content
+  std::vector<std::string> warnings;         // guesses, one line each
 };
 
 // Nothing is written to disk. `command`: what made the folder, for its README. The twin must live

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "exporter/scene.h"
 #include "exporter/xml.h"
 #include "twin/cone_name.h"
 #include "twin/contact_words.h"
+#include "twin/ground.h"
 
 namespace physpring {
 namespace {
@@ -84,6 +86,20 @@ std::string DescribeControllers(const LevelPlan& plan) {
       plan.Body(plan.system().node_count()), 1e3 * plan.timestep);
 }
 
+std::string DescribeGround(const LevelPlan& plan) {
+  const std::optional<Eigen::Vector4d> ground = GroundOf(plan);
+  if (!ground) {
+    return "The twin was trained without a ground, so the scenes have none and a free object "
+           "falls.";
+  }
+  const std::string plane = DescribeGround(ground);
+  if (plan.twin->ground.known) {
+    return "The floor of the scenes, " + plane + ", is the ground that the twin was trained with.";
+  }
+  return "The twin's file does not say what ground it was trained with; the floor of the scenes, " +
+         plane + ", is a guess.";
+}
+
 std::string ConeAttribute(const LevelPlan& plan) {
   return plan.WantsEllipticCone() ? fmt::format(" cone=\"{}\"", kElliptic) : "";
 }
@@ -115,6 +131,8 @@ model = mujoco.MjModel.from_xml_path("scene.xml")
 
 {5} {6}
 
+{13}
+
 {7}{9}In a scene of your own, with the Euler integrator{12}:
 
 ```xml
@@ -133,7 +151,7 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
                      DescribeContact(plan), DescribeControllers(plan), levels[0].model,
                      DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan),
-                     TimestepLimit(plan));
+                     TimestepLimit(plan), DescribeGround(plan));
 }
 
 }  // namespace physpring

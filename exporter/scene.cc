@@ -15,7 +15,6 @@ struct Extent {
   Eigen::Vector3d up;      // against gravity, |up| = 1
   Eigen::Vector3d centre;  // m
   double size;             // m, diagonal of the bounding box
-  double floor;            // m, along `up`
 };
 
 Extent MeasureExtent(const LevelPlan& plan) {
@@ -27,10 +26,6 @@ Extent MeasureExtent(const LevelPlan& plan) {
       gravity.norm() > 0 ? Eigen::Vector3d(-gravity.normalized()) : Eigen::Vector3d::UnitZ();
   extent.centre = (low + high) / 2;
   extent.size = std::max((high - low).norm(), 1e-3);
-  const Eigen::VectorXd heights =
-      (extent.up.transpose() * position.leftCols(plan.system().node_count())).transpose() -
-      plan.system().contact_radius;
-  extent.floor = std::min(0.0, heights.minCoeff());
   return extent;
 }
 
@@ -77,20 +72,23 @@ void AddFloorLook(XmlElement* mujoco) {
       {{"name", "floor"}, {"texture", "floor"}, {"texuniform", "true"}, {"texrepeat", "10 10"}});
 }
 
-void AddSurroundings(const Extent& extent, XmlElement* mujoco) {
+void AddSurroundings(const LevelPlan& plan, const Extent& extent, XmlElement* mujoco) {
   XmlElement* worldbody = AddElement(mujoco, "worldbody");
   AddElement(worldbody, "light",
              {{"pos", Numbers(extent.centre + 3 * extent.size * extent.up)},
               {"dir", Numbers(-extent.up)},
               {"cutoff", "60"},
               {"exponent", "1"}});
-  AddElement(worldbody, "geom",
-             {{"name", "floor"},
-              {"type", "plane"},
-              {"size", "0 0 0.05"},
-              {"pos", Numbers(extent.floor * extent.up)},
-              {"zaxis", Numbers(extent.up)},
-              {"material", "floor"}});
+  if (const auto ground = GroundOf(plan)) {
+    const Eigen::Vector3d normal = ground->head<3>();
+    AddElement(worldbody, "geom",
+               {{"name", "floor"},
+                {"type", "plane"},
+                {"size", "0 0 0.05"},
+                {"pos", Numbers((*ground)[3] * normal)},
+                {"zaxis", Numbers(normal)},
+                {"material", "floor"}});
+  }
   AddCamera(extent, worldbody);
 }
 
@@ -105,6 +103,18 @@ void AddKeyframes(const LevelPlan& plan, XmlElement* mujoco) {
 
 }  // namespace
 
+std::optional<Eigen::Vector4d> GroundOf(const LevelPlan& plan) {
+  const TrainedGround& ground = plan.twin->ground;
+  if (ground.known) return ground.plane;
+  const Eigen::Vector3d up = MeasureExtent(plan).up;
+  const Eigen::VectorXd heights =
+      (up.transpose() * plan.system().position.leftCols(plan.system().node_count())).transpose() -
+      plan.system().contact_radius;
+  Eigen::Vector4d plane;
+  plane << up, std::min(0.0, heights.minCoeff());
+  return plane;
+}
+
 std::string FormatScene(const LevelPlan& plan, const std::string& level_file) {
   tinyxml2::XMLDocument document;
   XmlElement* mujoco = document.NewElement("mujoco");
@@ -113,8 +123,8 @@ std::string FormatScene(const LevelPlan& plan, const std::string& level_file) {
   AddElement(mujoco, "include", {{"file", level_file}});
   const Extent extent = MeasureExtent(plan);
   AddOptions(plan, extent, mujoco);
-  AddFloorLook(mujoco);
-  AddSurroundings(extent, mujoco);
+  if (GroundOf(plan)) AddFloorLook(mujoco);
+  AddSurroundings(plan, extent, mujoco);
   AddKeyframes(plan, mujoco);
   return Print(document);
 }

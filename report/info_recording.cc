@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "report/info_text.h"
+#include "twin/ground.h"
 
 namespace physpring {
 namespace {
@@ -85,13 +86,7 @@ std::string DescribeRecording(const Recording& recording) {
   line("mass", fmt::format("{:g} kg", recording.mass));
   line("gravity", fmt::format("{:g} {:g} {:g} m/s^2", recording.gravity.x(), recording.gravity.y(),
                               recording.gravity.z()));
-  if (recording.ground) {
-    const Eigen::Vector4d& plane = *recording.ground;
-    line("ground",
-         fmt::format("{:g} x + {:g} y + {:g} z = {:g} m", plane[0], plane[1], plane[2], plane[3]));
-  } else {
-    line("ground", "none");
-  }
+  line("ground", DescribeGround(recording.ground));
   line("hash", recording.hash);
   return text;
 }

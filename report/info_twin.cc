@@ -9,6 +9,7 @@
 #include "twin/contact_words.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
+#include "twin/ground.h"
 #include "twin/level_numbers.h"
 #include "twin/stability.h"
 
@@ -131,12 +132,15 @@ std::string DescribeTwin(const Twin& twin) {
       "object       {} points, {} interior particles, {} controllers{}\n"
       "trained on   {}\n"
       "controllers  {}\n"
+      "ground       {}\n"
       "seed         {}\n"
       "options      {}\n",
       twin.points, twin.interior, twin.levels[0].system.controllers,
       twin.order.size() > 0 ? ", a rod" : "", DescribeTraining(twin),
       twin.controller_velocity ? "dashpots feel their velocity"
                                : "dashpots take them as standing still (PhysTwin)",
+      twin.ground.known ? DescribeGround(twin.ground.plane)
+                        : "not said (a file of an older program)",
       twin.seed, twin.options_json);
   for (std::size_t i = 0; i < twin.levels.size(); ++i) text += DescribeLevel(twin.levels[i], i);
   return text;
@@ -150,6 +154,9 @@ Json TwinToJson(const Twin& twin) {
                           {"train_frames", recording.train_frames}});
   }
   for (std::size_t i = 0; i < twin.levels.size(); ++i) levels.push_back(ToJson(twin.levels[i], i));
+  Json ground = twin.ground.known ? Json(nullptr) : Json("unknown");
+  if (twin.ground.plane)
+    ground = std::vector<double>(twin.ground.plane->begin(), twin.ground.plane->end());
   return {{"kind", "twin"},
           {"name", twin.name},
           {"points", twin.points},
@@ -158,6 +165,7 @@ Json TwinToJson(const Twin& twin) {
           {"rod", twin.order.size() > 0},
           {"fps", twin.fps},
           {"gravity_m_s2", std::vector<double>(twin.gravity.begin(), twin.gravity.end())},
+          {"ground", ground},
           {"controller_velocity", twin.controller_velocity},
           {"trained_on", trained_on},
           {"seed", twin.seed},

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rollout/exported_object.h"
+#include "rollout/scene_ground.h"
 #include "rollout/video_file.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
@@ -143,6 +144,9 @@ ControllerReplay ReplayControllers(const std::string& scene, const Recording& re
   object.SetControllers(controllers, Points::Zero(3, controllers.cols()), data.get());
   mj_kinematics(model.get(), data.get());
 
+  if (const std::string other = OtherGround(*model, *data, recording); !other.empty()) {
+    replay.warnings.push_back(scene + ": " + other);
+  }
   std::optional<Film> film;
   if (!options.video.empty()) film.emplace(*model, scene, recording, options);
   for (int frame = 0; frame < recording.frame_count(); ++frame) {

@@ -13,6 +13,8 @@
 namespace physpring {
 namespace {
 
+constexpr double kFarthest = 1000;  // m, of a coordinate from 0
+
 bool IsNumber(const std::string& extent) {
   return std::all_of(extent.begin(), extent.end(), [](unsigned char c) { return std::isdigit(c); });
 }
@@ -60,6 +62,7 @@ Eigen::VectorXd NpzFields::Vector(const std::string& name, const std::string& si
 
 Points NpzFields::Positions(const std::string& name, const std::string& size) {
   const std::vector<double> values = FiniteNumbers(name, {size, "3"});
+  ExpectWithinReach(name, values);
   return Eigen::Map<const Points>(values.data(), 3, static_cast<Eigen::Index>(values.size() / 3));
 }
 
@@ -81,11 +84,13 @@ std::vector<Points> NpzFields::FramesWithUnseen(const std::string& name, const s
                              values[k], FormatIndex(k, shape)));
     }
   }
+  ExpectWithinReach(name, values);
   return SplitFrames(values, shape[0], shape[1]);
 }
 
 std::vector<Points> NpzFields::Frames(const std::string& name, const std::string& size) {
   const std::vector<double> values = FiniteNumbers(name, {"T", size, "3"});
+  ExpectWithinReach(name, values);
   const std::vector<std::size_t>& shape = Get(name).shape;
   return SplitFrames(values, shape[0], shape[1]);
 }
@@ -154,6 +159,17 @@ std::vector<double> NpzFields::FiniteNumbers(const std::string& name, const Exte
     Fail(name, fmt::format("holds {}{}, expected finite numbers", values[i], place));
   }
   return values;
+}
+
+void NpzFields::ExpectWithinReach(const std::string& name,
+                                  const std::vector<double>& coordinates) const {
+  const auto is_far = [](double value) { return std::abs(value) > kFarthest; };
+  const auto far = std::find_if(coordinates.begin(), coordinates.end(), is_far);
+  if (far == coordinates.end()) return;
+  const auto place = static_cast<std::size_t>(far - coordinates.begin());
+  Fail(name, fmt::format("holds {} at {}, expected coordinates within {} m; NaN stands for a point "
+                         "that is not seen",
+                         *far, FormatIndex(place, Get(name).shape), kFarthest));
 }
 
 }  // namespace physpring

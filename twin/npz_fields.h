@@ -33,6 +33,8 @@ class NpzFields {
   // Finite numbers: a scalar, one dimension, and (size, 3) as 3 x size.
   double Scalar(const std::string& name);
   Eigen::VectorXd Vector(const std::string& name, const std::string& size);
+  // Coordinates, here and below, are within 1 km of 0: what is farther off marks a lost point, or
+  // overflows in squares.
   Points Positions(const std::string& name, const std::string& size);
 
   // (T, size, 3) as T frames of 3 x size. Points may be NaN in all three coordinates, not in some.
@@ -55,6 +57,7 @@ class NpzFields {
   const NpzArray& GetOfShape(const std::string& name, const Extents& shape);
   std::vector<double> Numbers(const std::string& name, const Extents& shape);
   std::vector<double> FiniteNumbers(const std::string& name, const Extents& shape);
+  void ExpectWithinReach(const std::string& name, const std::vector<double>& coordinates) const;
 
   const Npz& arrays_;
   std::string path_;

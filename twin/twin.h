@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,12 @@ struct TwinLevel {
   int substeps_per_second = 0;  // sub-steps it was trained with, per second of time
 };
 
+// The ground of the recordings that a twin was trained on.
+struct TrainedGround {
+  bool known = false;                    // files of older programs do not say
+  std::optional<Eigen::Vector4d> plane;  // (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1, or none
+};
+
 struct Twin {
   std::string name;
   std::vector<TwinLevel> levels;
@@ -38,6 +45,7 @@ struct Twin {
   bool controller_velocity = true;  // dashpots feel the controllers' velocity (false: PhysTwin)
   double fps = 0;
   Eigen::Vector3d gravity{0, 0, -9.81};
+  TrainedGround ground;
 
   std::vector<TrainedOn> trained_on;
   std::string options_json = "{}";  // the options it was trained with, a compact JSON object

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -25,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "physpring twin";
 constexpr int kVersion = 1;
+constexpr double kUnit = 1e-9;  // rounding of a normal of length 1
 constexpr const char* kStatePrefix = "train/";
 
 std::string LevelPrefix(std::size_t level) { return fmt::format("level{}/", level); }
@@ -110,6 +112,10 @@ Npz StoreTwin(const Twin& twin, const std::string& path) {
   arrays["meta"] = NpzArray::Text(StoreMeta(twin, path));
   arrays["fps"] = NpzArray::Doubles({}, &twin.fps);
   arrays["gravity"] = NpzArray::Doubles({3}, twin.gravity.data());
+  if (twin.ground.known) {
+    const auto& plane = twin.ground.plane;
+    arrays["ground"] = plane ? NpzArray::Doubles({4}, plane->data()) : NpzArray::Doubles({0}, nullptr);
+  }
   if (twin.order.size() > 0) arrays["order"] = StoreVector(twin.order);
   for (std::size_t n = 0; n < twin.levels.size(); ++n) {
     StoreLevel(twin.levels[n], LevelPrefix(n), arrays);
@@ -233,6 +239,20 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
   return level;
 }
 
+// Four numbers, or none where there was no ground.
+TrainedGround ReadTrainedGround(NpzFields* fields) {
+  const Eigen::VectorXd plane = fields->Vector("ground", "ground");
+  if (plane.size() == 0) return {.known = true, .plane = {}};
+  if (plane.size() != 4) {
+    fields->Fail("ground", fmt::format("has {} numbers, expected 4 (a, b, c, d), or none", plane.size()));
+  }
+  const double length = plane.head<3>().norm();
+  if (std::abs(length - 1) > kUnit) {
+    fields->Fail("ground", fmt::format("has a normal of length {}, expected 1", length));
+  }
+  return {.known = true, .plane = Eigen::Vector4d(plane)};
+}
+
 Twin ParseTwin(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
   if (!arrays.contains("meta") && arrays.contains("points"))
@@ -255,6 +275,7 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   twin.fps = fields.Scalar("fps");
   if (twin.fps <= 0) fields.Fail("fps", fmt::format("holds {}, expected more than 0", twin.fps));
   twin.gravity = fields.Vector("gravity", "3");
+  if (fields.Has("ground")) twin.ground = ReadTrainedGround(&fields);
   fields.SetExtent("nodes+controllers", ExtentOf(twin.levels[0].system.position.cols()));
   if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
   SpreadOrder(&twin);

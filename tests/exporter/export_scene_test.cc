@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "rollout/mujoco_log.h"
+#include "rollout/scene_ground.h"
 #include "tests/support/exported_folder.h"
 #include "tests/support/small_twin.h"
 #include "twin/atomic_file.h"
@@ -291,10 +292,34 @@ TEST(ExportScene, OddCharactersInATwinsName) {
   EXPECT_GE(Id(model, mjOBJ_BODY, "a_b_____--____0"), 0);
 }
 
+TEST(ExportScene, FloorIsTheGroundOfTheRecordings) {
+  Twin twin = SmallTwin(1);
+  const Eigen::Vector3d normal = Eigen::Vector3d(1, 2, 4).normalized();
+  Eigen::Vector4d plane;
+  plane << normal, -0.7;
+  twin.ground = {.known = true, .plane = plane};
+  const ExportedFolder tilted(twin, {});
+  EXPECT_TRUE(tilted.result.warnings.empty());
+  const ModelPtr model = tilted.Load("scene.xml");
+  const DataPtr data = MakeData(*model);
+  mj_forward(model.get(), data.get());
+  const std::vector<Eigen::Vector4d> grounds = GroundsOf(*model, *data);
+  ASSERT_EQ(grounds.size(), 1u);
+  EXPECT_LT((grounds[0] - plane).norm(), 1e-6);  // as many digits as MJCF gets
+
+  twin.ground.plane.reset();
+  const ExportedFolder none(twin, {});
+  EXPECT_TRUE(none.result.warnings.empty());
+  EXPECT_EQ(Id(none.Load("scene.xml"), mjOBJ_GEOM, "floor"), -1);
+}
+
+// A guess, where the twin's file does not say.
 TEST(ExportScene, FloorLiesBelowAndAcrossGravity) {
   Twin twin = SmallTwin(1);
   twin.gravity = Eigen::Vector3d(0, 9.81, 0);  // y points down
   const ExportedFolder folder(twin, {});
+  ASSERT_EQ(folder.result.warnings.size(), 1u);
+  EXPECT_NE(folder.result.warnings[0].find("does not say what ground"), std::string::npos);
   const ModelPtr model = folder.Load("scene.xml");
   const int floor = Id(model, mjOBJ_GEOM, "floor");
   EXPECT_EQ(model->opt.gravity[1], 9.81);

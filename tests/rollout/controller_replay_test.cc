@@ -31,7 +31,14 @@ class ControllerReplayTest : public testing::TestWithParam<SpringKind> {
   // The plugin takes a controller's velocity from where it was in the step before.
   static double Tolerance() { return GetParam() == SpringKind::kTendon ? 1e-9 : 2e-5; }
 
-  const Twin twin_ = SmallTwin(2);
+  // Without a ground, as its recording is.
+  static Twin GroundlessTwin() {
+    Twin twin = SmallTwin(2);
+    twin.ground = {.known = true, .plane = {}};
+    return twin;
+  }
+
+  const Twin twin_ = GroundlessTwin();
   const Recording recording_ = RecordingOfMotion(twin_, 12);
   const ExportedFolder folder_;
 };
@@ -59,6 +66,41 @@ TEST_P(ControllerReplayTest, LiftsALevelWithItsTwin) {
   for (std::size_t t = 0; t < predicted.size(); ++t) {
     EXPECT_LT((replay.particles[t] - lift.Apply(predicted[t])).cwiseAbs().maxCoeff(), Tolerance());
   }
+}
+
+// An object that is carried far below where it starts, and below height 0: no floor is in its way.
+TEST_P(ControllerReplayTest, GoesWhereTheRecordingHasNoGround) {
+  Recording recording = recording_;
+  for (int t = 0; t < recording.frame_count(); ++t) {
+    recording.controllers[t].row(2).array() -= 0.01 * t;
+  }
+  ExportOptions options = Options();
+  options.contact = ContactKind::kAuto;
+  const ExportedFolder folder(twin_, options);
+  const ControllerReplay replay =
+      ReplayControllers(folder.File("scene.xml"), recording, nullptr, {});
+  EXPECT_EQ(replay.warnings, std::vector<std::string>());
+  const std::vector<Points> predicted = Predict(twin_, 0, recording, {});
+  EXPECT_LT(predicted.back().row(2).minCoeff(), -0.05);
+  EXPECT_LT((replay.particles.back() - predicted.back()).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST_P(ControllerReplayTest, SaysThatTheRecordingHasAnotherGround) {
+  Recording recording = recording_;
+  recording.ground = Eigen::Vector4d(0, 0, 1, -0.3);
+  const ControllerReplay replay =
+      ReplayControllers(folder_.File("scene.xml"), recording, nullptr, {});
+  ASSERT_EQ(replay.warnings.size(), 1u);
+  EXPECT_THAT(replay.warnings[0], HasSubstr("its ground is none, that of recording"));
+  EXPECT_THAT(replay.warnings[0], HasSubstr("is 0 x + 0 y + 1 z = -0.3 m"));
+  // and the other way round
+  Twin grounded = twin_;
+  grounded.ground.plane = recording.ground;
+  const ExportedFolder folder(grounded, Options());
+  EXPECT_EQ(ReplayControllers(folder.File("scene.xml"), recording, nullptr, {}).warnings,
+            std::vector<std::string>());
+  EXPECT_EQ(ReplayControllers(folder.File("scene.xml"), recording_, nullptr, {}).warnings.size(),
+            1u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Springs, ControllerReplayTest,

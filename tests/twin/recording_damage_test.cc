@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording that is damaged or disagrees with itself is refused with one line.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -49,6 +50,27 @@ TEST_F(RecordingFile, NoArrayHoldsInfinity) {
     const std::string error = ErrorOfChanged();
     EXPECT_NE(error.find("array '" + name + "' holds inf"), std::string::npos) << error;
   }
+}
+
+// What trackers write for a lost point; its squares would overflow.
+TEST_F(RecordingFile, NoCoordinateIsBeyondAKilometre) {
+  const Npz sound = arrays_;
+  for (const char* name : {"points", "controllers", "interior", "rest", "surface", "track"}) {
+    for (const double value : {-1e155, 1e38, 1001.0}) {
+      arrays_ = sound;
+      ASSERT_TRUE(arrays_.contains(name));
+      SetValue(name, 1, value);
+      const std::string error = ErrorOfChanged();
+      EXPECT_NE(error.find(fmt::format("array '{}' holds {} at [0,", name, value)),
+                std::string::npos)
+          << error;
+      EXPECT_NE(error.find("expected coordinates within 1000 m"), std::string::npos) << error;
+    }
+  }
+  arrays_ = sound;
+  SetValue("rest", 1, -999);
+  Overwrite(path_, PackNpz(arrays_, path_));
+  EXPECT_EQ(ReadRecording(path_).rest(1, 0), -999);
 }
 
 TEST_F(RecordingFile, OnlyWholePointsMayBeNan) {

@@ -57,6 +57,25 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
   }
 }
 
+TEST_F(TwinFile, KeepsTheGround) {
+  Twin twin = MakeTwin();
+  EXPECT_FALSE(ReadTwin(path_).ground.known);
+  twin.ground = {.known = true, .plane = {}};
+  WriteTwin(twin, path_);
+  EXPECT_TRUE(ReadTwin(path_).ground.known);
+  EXPECT_FALSE(ReadTwin(path_).ground.plane);
+  const Eigen::Vector4d plane(0.6, 0, 0.8, -0.25);
+  twin.ground.plane = plane;
+  WriteTwin(twin, path_);
+  arrays_ = ReadNpz(path_);
+  EXPECT_EQ(ReadTwin(path_).ground.plane, plane);
+  arrays_["ground"] = NpzArray::Doubles({3}, plane.data());
+  EXPECT_EQ(ErrorOfChanged(),
+            path_ + ": array 'ground' has 3 numbers, expected 4 (a, b, c, d), or none");
+  arrays_["ground"] = NpzArray::Doubles({4}, Eigen::Vector4d(1, 0, 1, 0).data());
+  EXPECT_NE(ErrorOfChanged().find("expected 1"), std::string::npos);
+}
+
 TEST_F(TwinFile, KeepsTheConeOfFriction) {
   Twin twin = MakeTwin();
   EXPECT_EQ(ReadTwin(path_).levels[1].system.contact.surface.cone, FrictionCone::kElliptic);

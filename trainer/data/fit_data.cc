@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "twin/error.h"
+#include "twin/numbering.h"
 
 namespace physpring {
 namespace {
@@ -47,6 +48,8 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
       throw Error(fmt::format("{}: no point is seen in frames 1 to {}: there is nothing to fit",
                               entry.path, data.recordings.back().train_frames - 1));
     }
+    const std::string odd = OddNumbering(data.recordings[0], data.recordings.back());
+    if (!odd.empty()) data.recordings.back().warnings.push_back(entry.path + ": " + odd);
     const int own = -static_cast<int>(data.recordings.size());
     data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
                                                                         : own);
@@ -64,6 +67,7 @@ Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool 
   twin.controller_velocity = controller_velocity;
   twin.fps = recording.fps;
   twin.gravity = recording.gravity;
+  twin.ground = {.known = true, .plane = recording.ground};
   twin.seed = seed;
   return twin;
 }

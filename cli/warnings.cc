@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+namespace physpring {
+namespace {
+
+struct Alike {
+  std::string first;  // the file that it is said of first
+  int more = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings) {
+  std::map<std::string, Alike> files;
+  std::vector<std::string> order;
+  for (const std::string& warning : warnings) {
+    const std::size_t colon = std::min(warning.find(": "), warning.size());
+    const std::string what = warning.substr(colon);
+    const auto [found, is_new] = files.try_emplace(what, Alike{warning.substr(0, colon)});
+    if (is_new) {
+      order.push_back(what);
+    } else {
+      ++found->second.more;
+    }
+  }
+  std::vector<std::string> joined;
+  for (const std::string& what : order) {
+    const Alike& alike = files[what];
+    joined.push_back(alike.more == 0
+                         ? alike.first + what
+                         : fmt::format("{} and {} more{}", alike.first, alike.more, what));
+  }
+  return joined;
+}
+
+void PrintWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : JoinAlike(warnings))
+    fmt::print(stderr, "warning: {}\n", warning);
+}
+
+std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings) {
+  std::vector<std::string> warnings;
+  for (const Recording& recording : recordings) {
+    warnings.insert(warnings.end(), recording.warnings.begin(), recording.warnings.end());
+  }
+  return warnings;
+}
+
+}  // namespace physpring

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Warnings to the user, "warning: FILE: WHAT". What is said of several files alike
+// is said once: "warning: FILE and 23 more: WHAT".
+#ifndef PHYSPRING_CLI_WARNINGS_H_
+#define PHYSPRING_CLI_WARNINGS_H_
+
+#include <string>
+#include <vector>
+
+#include "twin/recording.h"
+
+namespace physpring {
+
+// One line each, "FILE: WHAT" joined where only the files differ, in the order of the first.
+std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings);
+
+void PrintWarnings(const std::vector<std::string>& warnings);
+
+// Those of all recordings.
+std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_WARNINGS_H_
