@@ -86,7 +86,7 @@ std::string DescribeControllers(const LevelPlan& plan) {
       plan.Body(plan.system().node_count()), 1e3 * plan.timestep);
 }
 
-std::string DescribeGround(const LevelPlan& plan) {
+std::string DescribeFloor(const LevelPlan& plan) {
   const std::optional<Eigen::Vector4d> ground = GroundOf(plan);
   if (!ground) {
     return "The twin was trained without a ground, so the scenes have none and a free object "
@@ -151,7 +151,7 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
                      DescribeContact(plan), DescribeControllers(plan), levels[0].model,
                      DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan),
-                     TimestepLimit(plan), DescribeGround(plan));
+                     TimestepLimit(plan), DescribeFloor(plan));
 }
 
 }  // namespace physpring
