@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads what PhysTwin keeps of a case: its data, its parameters and its checkpoint.
 
-PhysTwin's frame has z down, ours z up: (x, y, z) -> (x, -y, -z), a half turn about x. Points that
-are not visible are stored as zeros; here they are NaN. docs/phystwin.md describes the files.
+Ours has z up; where z points down in a case, (x, y, z) -> (x, -y, -z), a half turn about x. Points
+that are not visible are stored as zeros; here they are NaN. docs/phystwin.md describes the files.
 """
 
 import collections
-import json
 
 import numpy as np
 
 import safe_pickle
+from phystwin_settings import read_json
 from safe_pickle import Error
 
 Case = collections.namedtuple("Case", [
@@ -21,6 +21,7 @@ Case = collections.namedtuple("Case", [
     "tracked",  # (N, 3): the N tracked points in frame 0 as PhysTwin takes them, seen or not
     "track",  # (T, K, 3) key points or None
     "train_frames",  # or None
+    "reverse_z",  # whether z points down in the case's files
 ])
 
 
@@ -52,15 +53,10 @@ def require_finite(array, key, path):
         raise Error(f"{path}: {key} has values that are not finite")
 
 
-def z_up(points):
+def z_up(points, reverse_z):
+    if not reverse_z:
+        return points
     return points * np.array([1, -1, -1], np.float32) + np.float32(0)  # + 0: no -0
-
-
-def read_json(path):
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise Error(f"{path}: {error}") from None
 
 
 def read_train_frames(path, frames):
@@ -74,17 +70,18 @@ def read_train_frames(path, frames):
     return end
 
 
-def read_track(path, frames):
+def read_track(path, frames, reverse_z):
     track = array_of({"track": safe_pickle.read_pickle(path)}, "track", (-1, -1, 3), path)
     if len(track) < frames:
         raise Error(f"{path}: {len(track)} frames, final_data.pkl has {frames}")
     if np.isinf(track).any():
         raise Error(f"{path}: has infinite values")
     track[np.isnan(track).any(axis=2)] = np.nan
-    return z_up(track[:frames])
+    return z_up(track[:frames], reverse_z)
 
 
-def read_case(folder):
+def read_case(folder, reverse_z=None):
+    """The case. z points down in it if reverse_z; None: so that most points are above z = 0."""
     path = folder / "final_data.pkl"
     data = safe_pickle.read_pickle(path)
     if not isinstance(data, dict):
@@ -105,7 +102,9 @@ def read_case(folder):
     require_finite(controllers, "controller_points", path)
     require_finite(interior, "surface_points or interior_points", path)
 
-    points = z_up(points)
+    if reverse_z is None:
+        reverse_z = not np.median(points[0, :, 2]) > 0
+    points = z_up(points, reverse_z)
     # motion_valid[t] is about the motion from t to t + 1
     followed = visible.copy()
     followed[1:] &= motion_valid[:-1]
@@ -116,11 +115,12 @@ def read_case(folder):
     return Case(
         points=np.where(followed[:, :, None], points, np.float32(np.nan)),
         surface=np.where(visible[:, :, None], points, np.float32(np.nan)),
-        controllers=z_up(controllers),
-        interior=z_up(interior),
+        controllers=z_up(controllers, reverse_z),
+        interior=z_up(interior, reverse_z),
         tracked=points[0],
-        track=read_track(track_path, frames) if track_path.exists() else None,
-        train_frames=read_train_frames(split_path, frames) if split_path.exists() else None)
+        track=read_track(track_path, frames, reverse_z) if track_path.exists() else None,
+        train_frames=read_train_frames(split_path, frames) if split_path.exists() else None,
+        reverse_z=bool(reverse_z))
 
 
 def read_parameters(path):
