@@ -6,12 +6,18 @@ that are not visible are stored as zeros; here they are NaN. docs/phystwin.md de
 """
 
 import collections
+import numbers
 
 import numpy as np
 
 import safe_pickle
 from phystwin_settings import read_json
+from pickle_machine import shown
 from safe_pickle import Error
+
+MOST_COORDINATE = 1000.0  # m
+MOST_NEIGHBOURS = 1000  # PhysTwin's are 10 to 80
+MOST_PARAMETER = 1e9  # of any unit; PhysTwin's Y, its largest, is up to 1e5
 
 Case = collections.namedtuple("Case", [
     "points",  # (T, N, 3) float32, m, z up; NaN: not seen, or its motion to here is not valid
@@ -53,6 +59,13 @@ def require_finite(array, key, path):
         raise Error(f"{path}: {key} has values that are not finite")
 
 
+def require_places(array, key, path):
+    require_finite(array, key, path)
+    if array.size > 0 and np.abs(array).max() > MOST_COORDINATE:
+        raise Error(f"{path}: {key} has a coordinate of {np.abs(array).max():g} m, expected "
+                    f"{MOST_COORDINATE:g} m or less")
+
+
 def z_up(points, reverse_z):
     if not reverse_z:
         return points
@@ -66,7 +79,7 @@ def read_train_frames(path, frames):
     except (TypeError, KeyError, ValueError):
         raise Error(f"{path}: no \"train\": [0, end]") from None
     if start != 0 or not isinstance(end, int) or not 2 <= end <= frames:
-        raise Error(f"{path}: train is {split['train']}, expected [0, end], 2 <= end <= {frames}")
+        raise Error(f"{path}: train is [{shown(start)}, {shown(end)}], expected [0, end], 2 <= end <= {frames}")
     return end
 
 
@@ -74,8 +87,9 @@ def read_track(path, frames, reverse_z):
     track = array_of({"track": safe_pickle.read_pickle(path)}, "track", (-1, -1, 3), path)
     if len(track) < frames:
         raise Error(f"{path}: {len(track)} frames, final_data.pkl has {frames}")
-    if np.isinf(track).any():
-        raise Error(f"{path}: has infinite values")
+    if track.shape[1] < 1:
+        raise Error(f"{path}: has no key point")
+    require_places(track[~np.isnan(track)], "the track", path)
     track[np.isnan(track).any(axis=2)] = np.nan
     return z_up(track[:frames], reverse_z)
 
@@ -97,10 +111,10 @@ def read_case(folder, reverse_z=None):
         controllers = array_of(data, "controller_points", (frames, -1, 3), path)
     interior = np.concatenate([array_of(data, key, (-1, 3), path)
                                for key in ("surface_points", "interior_points")])
-    require_finite(points[visible], "object_points", path)
-    require_finite(points[0], "object_points of frame 0", path)
-    require_finite(controllers, "controller_points", path)
-    require_finite(interior, "surface_points or interior_points", path)
+    require_places(points[visible], "object_points", path)
+    require_places(points[0], "object_points of frame 0", path)
+    require_places(controllers, "controller_points", path)
+    require_places(interior, "surface_points or interior_points", path)
 
     if reverse_z is None:
         reverse_z = not np.median(points[0, :, 2]) > 0
@@ -132,11 +146,14 @@ def read_parameters(path):
     parameters = {}
     for name in names:
         try:
+            if not isinstance(data[name], numbers.Real):
+                raise TypeError
             parameters[name] = float(data[name])
-        except (TypeError, KeyError, IndexError, ValueError):
+        except (TypeError, KeyError, IndexError, ValueError, OverflowError):
             raise Error(f"{path}: no number {name}") from None
-        if not 0 <= parameters[name] < np.inf:
-            raise Error(f"{path}: {name} is {parameters[name]}, expected 0 or more")
+        most = MOST_NEIGHBOURS if name.endswith("neighbours") else MOST_PARAMETER
+        if not 0 <= parameters[name] <= most:
+            raise Error(f"{path}: {name} is {parameters[name]:g}, expected 0 to {most:g}")
     for name in ("object_max_neighbours", "controller_max_neighbours"):
         parameters[name] = int(parameters[name])
     return parameters
@@ -153,5 +170,9 @@ def read_checkpoint(path):
         value = array_of(data, name, (1,), path)
         require_finite(value, name, path)
         checkpoint[name] = float(value[0])
-    checkpoint["num_object_springs"] = data.get("num_object_springs")  # checked against the springs
+    count = data.get("num_object_springs")
+    if not isinstance(count, int) or not 0 <= count <= len(checkpoint["spring_Y"]):
+        raise Error(f"{path}: num_object_springs is {shown(count)}, expected 0 to "
+                    f"{len(checkpoint['spring_Y'])}")
+    checkpoint["num_object_springs"] = count  # checked against the springs
     return checkpoint

@@ -138,7 +138,7 @@ def find_results(folder, args):
 
 def convert(args):
     """Writes what `args` ask for; the notes about it, a line each."""
-    folder, notes = args.case.resolve(), []
+    folder, notes = pathlib.Path(os.path.realpath(args.case)), []
     if not folder.is_dir():
         raise Error(f"{args.case}: no such folder")
     settings = read_settings(folder, args, notes.append)
@@ -235,6 +235,14 @@ def main(argv=None):
     except Error as error:
         # a damaged file can put anything into a message: one line of it
         print("phystwin_to_npz: error: " + " ".join(str(error).split())[:500], file=sys.stderr)
+        return 1
+    except OSError as error:  # a folder that may not be looked into
+        print(f"phystwin_to_npz: error: {error.filename or args.case}: {error.strerror}",
+              file=sys.stderr)
+        return 1
+    except MemoryError:
+        print(f"phystwin_to_npz: error: {args.case}: needs more memory than there is",
+              file=sys.stderr)
         return 1
     return 0
 

@@ -9,8 +9,8 @@ import os
 import subprocess
 import unittest
 
+from phystwin_test_case import Case, half_turn, np  # first: it finds the tools, or skips
 import phystwin_case_maker as maker
-from phystwin_to_npz_test import Case, half_turn, np
 
 REAL = """data_type: "real"
 FPS: {fps}   # as filmed
