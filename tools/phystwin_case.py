@@ -79,7 +79,8 @@ def read_train_frames(path, frames):
     except (TypeError, KeyError, ValueError):
         raise Error(f"{path}: no \"train\": [0, end]") from None
     if start != 0 or not isinstance(end, int) or not 2 <= end <= frames:
-        raise Error(f"{path}: train is [{shown(start)}, {shown(end)}], expected [0, end], 2 <= end <= {frames}")
+        raise Error(f"{path}: train is [{shown(start)}, {shown(end)}], expected [0, end], "
+                    f"2 <= end <= {frames}")
     return end
 
 

@@ -122,8 +122,8 @@ class SameAsPickleTest(Case):
     def test_values_are_those_of_pickle(self):
         shared = [1, 2]
         values = [None, True, False, 0, -1, 255, 65535, 2 ** 31, -2 ** 40, 2 ** 300, 1.5, -0.0,
-                  float("inf"), "", "plain", "\u00e4\u20ac\U0001f600\n\\u", (), (1,), (1, 2), (1, 2, 3),
-                  (1, 2, 3, 4), [], [shared, shared], list(range(2000)), {},
+                  float("inf"), "", "plain", "\u00e4\u20ac\U0001f600\n\\u", (), (1,), (1, 2),
+                  (1, 2, 3), (1, 2, 3, 4), [], [shared, shared], list(range(2000)), {},
                   {"a": {1: 2.5, None: []}}, {str(n): n for n in range(2000)}]
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             maker.write_pickle(self.root / "value.pkl", values, protocol)
