@@ -17,6 +17,7 @@ except ImportError:
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1] / "tools"), str(HERE)]
 import phystwin_case_maker as maker  # noqa: E402
+import phystwin_springs  # noqa: E402
 import phystwin_to_npz  # noqa: E402
 
 
@@ -65,3 +66,22 @@ class Case(unittest.TestCase):
     def particles(self):
         return np.concatenate([self.data["object_points"][0], self.data["surface_points"],
                                self.data["interior_points"]]).astype(np.float32)
+
+
+class TwinCase(Case):
+    """A case that has parameters."""
+
+    def setUp(self):
+        super().setUp()
+        maker.write_case(self.folder, self.data)
+        maker.write_pickle(self.folder / "optimal_params.pkl", maker.PARAMETERS)
+
+    def write_checkpoint(self, path=None, change=0):
+        springs, _, object_springs = phystwin_springs.find_springs(
+            self.particles(), self.data["controller_points"][0].astype(np.float32),
+            maker.PARAMETERS)
+        spring_Y = np.random.default_rng(2).uniform(1e4, 9e4, len(springs) + change)
+        spring_Y[:2] = 2e5, 0
+        maker.torch_save(maker.checkpoint(spring_Y, object_springs),
+                         path or self.folder / "best_180.pth")
+        return spring_Y.astype(np.float32)
