@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Converts a PhysTwin case to a recording and, where its parameters are there, a level-0 twin.
 
-PhysTwin's frame has z down, ours z up: (x, y, z) -> (x, -y, -z), a half turn about x. Its particles
-weigh 1 kg each and its spring force is Y (l / L - 1); with m = mass / particles, ours has
-    stiffness k = Y m / L,   dashpot c m,   drag as it is.
-PhysTwin saves no springs, only Y by index: they are searched again here, in the same order.
+PhysTwin's frame mostly has z down, ours z up: (x, y, z) -> (x, -y, -z), a half turn about x. How
+fast a case was filmed and which way z points is read from its metadata.json and configuration.
 docs/phystwin.md says more. Needs Python 3.9 and numpy; runs no code that a pickle names.
 """
 
@@ -22,15 +20,11 @@ except ImportError:
     sys.exit("phystwin_to_npz: error: needs numpy (apt-get install python3-numpy)")
 
 import phystwin_case
-from phystwin_springs import find_springs
+from phystwin_settings import LEAST_FPS, MOST_FPS, read_settings
+from phystwin_twin import DEFAULT_MASS, GRAVITY, convert_twin
 from safe_pickle import Error
 
-FPS = 30
-SUBSTEPS_PER_SECOND = 667 * FPS  # PhysTwin: 667 sub-steps of 5e-5 s a frame
-GRAVITY = [0.0, 0.0, -9.8]  # m/s^2
 GROUND = [0.0, 0.0, 1.0, 0.0]  # z = 0
-DEFAULT_MASS = 0.1  # kg, what our reader assumes where none is declared
-Y_MAX = 1e5  # N; PhysTwin's simulator clamps Y to [0, Y_MAX]
 
 EXAMPLES = """examples:
   # a case where PhysTwin left it, with its results in experiments_optimization/ and experiments/
@@ -44,16 +38,12 @@ EXAMPLES = """examples:
 """
 
 
-def note(text):
-    print(f"phystwin_to_npz: note: {text}", file=sys.stderr)
-
-
-def recording_of(case, mass):
+def recording_of(case, fps, mass):
     arrays = {
         "points": case.points,
         "controllers": case.controllers,
         "interior": case.interior,
-        "fps": np.float64(FPS),
+        "fps": np.float64(fps),
         "gravity": np.array(GRAVITY),
         "ground": np.array(GROUND),
     }
@@ -67,57 +57,6 @@ def recording_of(case, mass):
     if mass is not None:
         arrays["mass"] = np.float64(mass)
     return arrays
-
-
-def parameters_of(name, springs, object_springs, args, parameters, checkpoint_path):
-    """PhysTwin's parameters as its simulator uses them, with Y of each spring."""
-    used = dict(parameters, spring_Y=np.full(len(springs), parameters["global_spring_Y"]))
-    if checkpoint_path is not None:
-        checkpoint = phystwin_case.read_checkpoint(checkpoint_path)
-        stored = (len(checkpoint["spring_Y"]), checkpoint["num_object_springs"])
-        if stored != (len(springs), object_springs):
-            raise Error(f"{checkpoint_path}: holds {stored[0]} springs, {stored[1]} of them "
-                        f"between particles, but the case and its parameters give {len(springs)} "
-                        f"and {object_springs}: they are not of one run")
-        used.update(checkpoint)
-    # PhysTwin's second stage makes these two whole numbers: its Y belong to those
-    if args.truncate if args.truncate is not None else checkpoint_path is not None:
-        used["dashpot_damping"] = float(int(used["dashpot_damping"]))
-        used["drag_damping"] = float(int(used["drag_damping"]))
-    self_collision = args.self_collision
-    if self_collision is None:  # PhysTwin chooses its configuration by name, too
-        self_collision = "cloth" in name or "package" in name
-    if not self_collision:
-        used["collision_dist"] = 0.0
-    return used
-
-
-def twin_of(case, springs, rest_length, parameters, mass):
-    """Arrays of level 0."""
-    particles = len(case.tracked) + len(case.interior)
-    particle_mass = mass / particles
-    position = np.concatenate([case.tracked, case.interior, case.controllers[0]])
-    spring_Y = parameters["spring_Y"]
-    # PhysTwin skips a spring whose Y is not above 0, its dashpot with it
-    dashpot = np.where(spring_Y > 0, parameters["dashpot_damping"] * particle_mass, 0.0)
-    return {
-        "fps": np.float64(FPS),
-        "gravity": np.array(GRAVITY),
-        "level0/position": position.astype(np.float64),
-        "level0/mass": np.full(particles, particle_mass),
-        "level0/springs": springs,
-        "level0/rest_length": rest_length,
-        "level0/stiffness": np.clip(spring_Y, 0, Y_MAX) * particle_mass / rest_length,
-        "level0/dashpot": dashpot,
-        "level0/drag": np.float64(parameters["drag_damping"]),
-        "level0/contact_radius": np.zeros(particles),
-        "level0/restitution": np.float64(np.clip(parameters["collide_elas"], 0, 1)),
-        "level0/friction": np.float64(np.clip(parameters["collide_fric"], 0, 2)),
-        "level0/object_restitution": np.float64(np.clip(parameters["collide_object_elas"], 0, 1)),
-        "level0/object_friction": np.float64(np.clip(parameters["collide_object_fric"], 0, 2)),
-        "level0/collision_distance": np.float64(parameters["collision_dist"]),
-        "level0/substeps_per_second": np.int32(SUBSTEPS_PER_SECOND),
-    }
 
 
 def meta_of(case, name, recording_bytes):
@@ -197,46 +136,51 @@ def find_results(folder, args):
     return parameters, checkpoint
 
 
-def convert_twin(case, name, args, parameters_path, checkpoint_path):
-    """(arrays of the twin without `meta`, a line about it)."""
-    parameters = phystwin_case.read_parameters(parameters_path)
-    springs, rest_length, object_springs = find_springs(
-        np.concatenate([case.tracked, case.interior]), case.controllers[0], parameters)
-    if object_springs == 0:
-        raise Error(f"{parameters_path}: object_radius {parameters['object_radius']} m joins no "
-                    "two particles")
-    used = parameters_of(name, springs, object_springs, args, parameters, checkpoint_path)
-    arrays = twin_of(case, springs, rest_length, used, args.mass or DEFAULT_MASS)
-    return arrays, (f"{len(springs)} springs, {object_springs} of them between particles; drag "
-                    f"{used['drag_damping']:.6g} 1/s, dashpot {used['dashpot_damping']:.6g} N s/m "
-                    f"at 1 kg a particle, collision distance {used['collision_dist']:.6g} m")
-
-
 def convert(args):
-    folder = args.case.resolve()
+    """Writes what `args` ask for; the notes about it, a line each."""
+    folder, notes = pathlib.Path(os.path.realpath(args.case)), []
     if not folder.is_dir():
         raise Error(f"{args.case}: no such folder")
-    case = phystwin_case.read_case(folder)
+    settings = read_settings(folder, args, notes.append)
+    case = phystwin_case.read_case(folder, settings.reverse_z)
     parameters_path, checkpoint_path = find_results(folder, args)
-    recording = npz_bytes(recording_of(case, args.mass))
+    recording = npz_bytes(recording_of(case, settings.fps, args.mass))
     files = {args.output: recording}
     report = [f"{args.output}: {len(case.points)} frames, {len(case.tracked)} points, "
               f"{len(case.interior)} interior particles, {case.controllers.shape[1]} controllers"]
     if parameters_path is not None:
-        arrays, summary = convert_twin(case, folder.name, args, parameters_path, checkpoint_path)
+        arrays, summary = convert_twin(case, settings, args, parameters_path, checkpoint_path,
+                                       notes.append)
         arrays["meta"] = meta_of(case, args.output.stem, recording)
         twin_path = args.output.with_suffix(".twin.npz")
         files[twin_path] = npz_bytes(arrays)
         report.append(f"{twin_path}: {summary}")
     write_files(files)
     print("\n".join(report))
+    return notes + doubts(case, settings, args)
+
+
+def doubts(case, settings, args):
+    """What was assumed, and what makes it doubtful whether the recording is right."""
+    found = []
     if args.mass is None:
-        note(f"PhysTwin declares no mass, {DEFAULT_MASS} kg is assumed (--mass KG)")
+        found.append(f"PhysTwin declares no mass, {DEFAULT_MASS} kg is assumed (--mass KG)")
     unseen = int(np.isnan(case.points[0]).any(axis=1).sum())
     if unseen > 0:
-        note(f"{unseen} points are not visible in frame 0; the twin has them where PhysTwin does")
-    if np.median(case.tracked[:, 2]) < 0:
-        note("most points are below the ground: does z point down in this case?")
+        found.append(f"{unseen} points are not visible in frame 0; the twin has them where "
+                     "PhysTwin does")
+    flag = "--no-reverse-z" if case.reverse_z else "--reverse-z"
+    if settings.reverse_z is None:
+        found.append("nothing says which way z points (reverse_z in a configuration): "
+                     f"{'down' if case.reverse_z else 'up'} is assumed, which puts most points "
+                     f"above the ground ({flag} chooses otherwise)")
+    elif np.median(case.tracked[:, 2]) < 0:
+        found.append("most points are below the ground: does z point the other way in this case "
+                     f"({flag})?")
+    if settings.frame_num is not None and settings.frame_num != len(case.points):
+        found.append(f"metadata.json says {settings.frame_num:g} frames, final_data.pkl has "
+                     f"{len(case.points)}: if some were left out, --fps is that of the rest")
+    return found
 
 
 def parse_arguments(argv):
@@ -251,6 +195,16 @@ def parse_arguments(argv):
     parser.add_argument("--mass", type=float, metavar="KG",
                         help=f"mass of the object; PhysTwin has none (default: not declared, "
                              f"{DEFAULT_MASS} in the twin)")
+    parser.add_argument("--fps", type=float, metavar="N",
+                        help="frames a second (default: fps in metadata.json of CASE, else FPS in "
+                             "the configuration, else 30)")
+    parser.add_argument("--reverse-z", action=argparse.BooleanOptionalAction,
+                        help="z points down in CASE (default: reverse_z in the configuration, else "
+                             "as most points are above z = 0)")
+    parser.add_argument("--config", type=pathlib.Path, metavar="FILE",
+                        help="PhysTwin's configuration (default: a yaml file in CASE, else "
+                             "configs/cloth.yaml or configs/real.yaml beside data/, by the name of "
+                             "CASE, as PhysTwin does)")
     parser.add_argument("--parameters", type=pathlib.Path, metavar="FILE",
                         help="optimal_params.pkl (default: in CASE, or in "
                              "experiments_optimization/ beside PhysTwin's data/)")
@@ -261,23 +215,34 @@ def parse_arguments(argv):
                         help="cut dashpot and drag to whole numbers, as PhysTwin's second stage "
                              "and inference do (default: yes with a checkpoint, else no)")
     parser.add_argument("--self-collision", action=argparse.BooleanOptionalAction,
-                        help="particles collide with each other (default: for cloth and packages, "
-                             "by the name of CASE, as PhysTwin does)")
+                        help="particles collide with each other (default: self_collision in the "
+                             "configuration, else for cloth and packages, by the name of CASE)")
     args = parser.parse_args(argv)
     if args.output.suffix != ".npz" or args.output.name.endswith(".twin.npz"):
         parser.error(f"-o {args.output}: expected NAME.npz")
     if args.mass is not None and not 0 < args.mass < float("inf"):
         parser.error(f"--mass {args.mass}: expected more than 0")
+    if args.fps is not None and not LEAST_FPS <= args.fps <= MOST_FPS:
+        parser.error(f"--fps {args.fps}: expected {LEAST_FPS:g} to {MOST_FPS:g}")
     return args
 
 
 def main(argv=None):
     args = parse_arguments(argv)
     try:
-        convert(args)
+        for note in convert(args):
+            print(f"phystwin_to_npz: note: {note}", file=sys.stderr)
     except Error as error:
         # a damaged file can put anything into a message: one line of it
         print("phystwin_to_npz: error: " + " ".join(str(error).split())[:500], file=sys.stderr)
+        return 1
+    except OSError as error:  # a folder that may not be looked into
+        print(f"phystwin_to_npz: error: {error.filename or args.case}: {error.strerror}",
+              file=sys.stderr)
+        return 1
+    except MemoryError:
+        print(f"phystwin_to_npz: error: {args.case}: needs more memory than there is",
+              file=sys.stderr)
         return 1
     return 0
 

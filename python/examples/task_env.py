@@ -23,8 +23,10 @@ import numpy as np
 # here if its input is, to the last bit.
 
 def unit(q):
-    """The unit quaternion along q."""
+    """The unit quaternion along q, which must not be zero."""
     norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    if not 1e-3 <= norm < math.inf:
+        raise ValueError(f'the quaternion {[float(x) for x in q]} is zero or not finite')
     return np.array([q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm])
 
 
@@ -66,7 +68,10 @@ class TaskEnv:
     """reset() and step(action) as in gymnasium.Env; actions as docs/rollout.md describes them.
 
     An observation is {"robot": as in episodes' files, "nodes": (N, 3) places of the object's nodes
-    [m]}. There is no reward: success is judged by `physpring rollout`.
+    [m]}. There is no reward: success is judged by `physpring rollout`. The same seed gives the same
+    starts: the first, and those of later resets without a seed. An action that cannot be followed is
+    a ValueError and changes nothing. A simulation that MuJoCo warns of, which it may silently start
+    again, is a RuntimeError.
     """
 
     def __init__(self, folder, level=0):
@@ -105,15 +110,20 @@ class TaskEnv:
         self.fingers = [self.model.actuator(name).id for name in self.robot.get('actuators', [])]
         self.open = np.array(self.robot.get('open', []), dtype=float)
         self.closed = np.array(self.robot.get('closed', []), dtype=float)
+        self.random = np.random.default_rng()
+        self.frame = None  # until the first reset
 
     def reset(self, *, seed=None, options=None):
         """options["start"]: where the object starts, as in an episode's JSON; else a random cell of
-        the task's grid."""
+        the task's grid, drawn anew from `seed` or, without one, the next."""
+        if seed is not None:
+            self.random = np.random.default_rng(seed)
         start = (options or {}).get('start')
         if start:
             position, orientation = np.array(start['position']), np.array(start['quaternion'])
+            unit(orientation)
         else:
-            position, orientation = self._random_start(np.random.default_rng(seed))
+            position, orientation = self._random_start()
         mujoco.mj_resetData(self.model, self.data)
         back = self.parent[1] * [1, -1, -1, -1]
         for reference, qpos in zip(self.reference, self.node_qpos):
@@ -130,11 +140,18 @@ class TaskEnv:
         return self._observe(), {}
 
     def step(self, action):
-        self._run_frame(np.asarray(action, dtype=float))
+        """x y z [m], the quaternion w x y z of the target and the gripper, 0 open to 1 closed."""
+        if self.frame is None:
+            raise RuntimeError('reset() comes before step()')
+        action = np.asarray(action, dtype=float)
+        if action.shape != (8,) or not np.isfinite(action).all():
+            raise ValueError('an action is 8 finite numbers: x y z, qw qx qy qz, gripper')
+        self._run_frame(action)
         self.frame += 1
         return self._observe(), 0.0, False, self.frame >= self.frames, {}
 
-    def _random_start(self, random):
+    def _random_start(self):
+        random = self.random
         starts = self.task.get('starts', {})
         shift = [random.choice(starts.get(axis, [0])) for axis in ('x', 'y')]
         noise = starts.get('noise_xy', 0.002)
@@ -175,8 +192,17 @@ class TaskEnv:
             self._place(position + share * (to[0] - position),
                         slerp(quaternion, to[1], share), gripper + share * (to[2] - gripper))
             mujoco.mj_step(self.model, self.data)
+            self._expect_no_warning()
         self.target = to
         mujoco.mj_kinematics(self.model, self.data)
+
+    def _expect_no_warning(self):
+        """MuJoCo counts its warnings, and after some starts again from the model's first state."""
+        for kind, warning in enumerate(self.data.warning):
+            if warning.number:
+                self.frame = None
+                name = mujoco.mjtWarning(kind).name
+                raise RuntimeError(f'MuJoCo warns: {name}, {warning.lastinfo}; needs a reset()')
 
     def _observe(self):
         local = self.reference + self.data.qpos[self.node_qpos]

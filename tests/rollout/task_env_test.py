@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python example gives the states of `physpring rollout`, in stock MuJoCo.
+"""The Python example gives the states of `physpring rollout`, in stock MuJoCo, and keeps what it
+promises of resets and steps (task_env_claims.py).
 
 task_env_test.py PHYSPRING MAKE_SMALL_TASK PLUGIN EXAMPLE ENVIRONMENT
 """
@@ -31,6 +32,16 @@ class TaskEnvTest(unittest.TestCase):
                 print(done.stdout.strip())
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 self.assertNotIn('moved by up to 0 m', done.stdout)
+
+    def test_resets_and_steps_are_as_promised(self):
+        with tempfile.TemporaryDirectory() as folder:
+            task = pathlib.Path(folder) / 'task'
+            subprocess.run([MAKE_TASK, task], check=True)
+            done = subprocess.run(
+                [PYTHON, '-W', 'error', pathlib.Path(__file__).with_name('task_env_claims.py'),
+                 EXAMPLE, task],
+                env={**os.environ, 'PHYSPRING_PLUGIN': PLUGIN}, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
 PYTHON = python_with(ENVIRONMENT, ['mujoco-core==4.0.0'])
