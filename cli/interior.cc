@@ -90,7 +90,7 @@ void AddInteriorCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "recording to write")
       ->required()
-      ->check(NotEmpty())
+      ->check(FileNameWith(".npz"))
       ->type_name("NEW.npz");
   command->add_flag("--force", arguments->force, "overwrite a file");
   command->callback([arguments] { Run(*arguments); });

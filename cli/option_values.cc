@@ -67,6 +67,16 @@ CLI::Validator NotEmpty() {
   return {[](std::string& text) { return Expect(!text.empty(), "a name", text); }, ""};
 }
 
+CLI::Validator FileNameWith(const std::string& ending) {
+  return {[ending](const std::string& name) {
+            const bool has_stem = name.size() > ending.size() && name.ends_with(ending);
+            return has_stem
+                       ? ""
+                       : fmt::format("takes a file name that ends with {}, not '{}'", ending, name);
+          },
+          ""};
+}
+
 CLI::Validator OneOf(const std::vector<std::string>& words) {
   return {[=](std::string& text) {
             return Expect(std::find(words.begin(), words.end(), text) != words.end(),

@@ -27,6 +27,9 @@ CLI::Validator WholeNumberOrAuto(std::int64_t most);
 // Any text but the empty one.
 CLI::Validator NotEmpty();
 
+// A name that ends with `ending`, ".npz".
+CLI::Validator FileNameWith(const std::string& ending);
+
 // One of a few words.
 CLI::Validator OneOf(const std::vector<std::string>& words);
 

@@ -32,6 +32,9 @@ void ExpectOutputs(const std::vector<std::string>& outputs,
                    const std::vector<std::string>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
     if (output->empty()) continue;
+    if (*output == "-") {
+      throw Error("-: is no file name here; standard output is for the report to read");
+    }
     for (const std::string& input : inputs) {
       if (AreSame(*output, input)) {
         throw Error(fmt::format("{}: is read by this command and cannot be written", *output));

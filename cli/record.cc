@@ -109,7 +109,7 @@ void AddRecordCommand(CLI::App& app) {
       ->type_name("SCENE.xml");
   command->add_option("-o,--output", arguments->output, "recording to write")
       ->required()
-      ->check(NotEmpty())
+      ->check(FileNameWith(".npz"))
       ->type_name("REC.npz");
   AddMeasurementOptions(command, &arguments->options);
   command

@@ -205,7 +205,7 @@ void AddTrainCommand(CLI::App& app) {
       ->type_name("REC.npz|DIR");
   command->add_option("-o,--output", arguments->output, "twin to write")
       ->required()
-      ->check(NotEmpty())
+      ->check(FileNameWith(".npz"))
       ->type_name("NAME.twin.npz");
   AddTrainFlags(command, &arguments->options);
   AddTwinInputs(command, arguments.get());

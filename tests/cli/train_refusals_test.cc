@@ -96,6 +96,9 @@ TEST_F(Train, FailsInOneLineAndWritesNothing) {
   };
   fails({"train", folder_.File("none.npz"), "-o", twin_}, "none.npz: does not exist");
   fails({"train", rope_, rope_, "-o", twin_}, "rope.npz: is given twice");
+  const std::string copy = folder_.File("copy.npz");
+  std::filesystem::copy_file(rope_, copy);
+  fails({"train", rope_, copy, "-o", twin_}, "copy.npz: is the same recording as " + rope_);
   fails({"train", rope_, "-o", folder_.File("none/rope.twin.npz")},
         "none/rope.twin.npz: cannot be written: its folder is missing");
   fails({"train", rope_, "-o", twin_, "--log", folder_.path()},
@@ -139,6 +142,12 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--levels", "2", "--ratios", "0.5,0.3"}, "--ratios: are of levels 1, 2, ...");
   refused({"--self-collision"}, "--self-collision: is of --method two-stage");
   refused({"--resume", "--force"}, "--resume excludes --force");
+  for (const char* name : {"rope.txt", "rope", ".npz", ""}) {
+    const ProgramResult result = RunProgram({"train", rope_, "-o", name});
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.errors.find("takes a file name that ends with .npz"), std::string::npos)
+        << result.errors;
+  }
 }
 
 }  // namespace

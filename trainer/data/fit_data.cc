@@ -37,6 +37,16 @@ bool SeesMotion(const Recording& recording) {
   return false;
 }
 
+// The last recording is none of those before it under another name: it would count twice.
+void ExpectNew(const std::vector<Recording>& recordings,
+               const std::vector<RecordingEntry>& entries) {
+  for (std::size_t i = 0; i + 1 < recordings.size(); ++i) {
+    if (recordings[i].hash != recordings.back().hash) continue;
+    throw Error(fmt::format("{}: is the same recording as {}", entries[recordings.size() - 1].path,
+                            entries[i].path));
+  }
+}
+
 }  // namespace
 
 FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
@@ -48,6 +58,7 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
       throw Error(fmt::format("{}: no point is seen in frames 1 to {}: there is nothing to fit",
                               entry.path, data.recordings.back().train_frames - 1));
     }
+    ExpectNew(data.recordings, entries);
     const std::string odd = OddNumbering(data.recordings[0], data.recordings.back());
     if (!odd.empty()) data.recordings.back().warnings.push_back(entry.path + ": " + odd);
     const int own = -static_cast<int>(data.recordings.size());
