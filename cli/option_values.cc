@@ -68,11 +68,9 @@ CLI::Validator NotEmpty() {
 }
 
 CLI::Validator FileNameWith(const std::string& ending) {
-  return {[ending](const std::string& name) {
-            const bool has_stem = name.size() > ending.size() && name.ends_with(ending);
-            return has_stem
-                       ? ""
-                       : fmt::format("takes a file name that ends with {}, not '{}'", ending, name);
+  return {[=](std::string& text) {
+            return Expect(text.size() > ending.size() && text.ends_with(ending),
+                          fmt::format("a file name that ends with {}", ending), text);
           },
           ""};
 }
