@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diagnosis/acceptance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace physpring {
@@ -43,10 +45,27 @@ bool IsHopeless(double misfit, double least_misfit) { return misfit > kHopeless 
 bool IsWorthRefit(double score, double best_score) { return score > kLeastScore * best_score; }
 
 bool IsWorthIt(const BootstrapResult& gain, double without, const Threshold& threshold) {
+  return WhyNotWorthIt(gain, without, threshold).empty();
+}
+
+std::string WhyNotWorthIt(const BootstrapResult& gain, double without, const Threshold& threshold) {
   const double excess = std::max(0.0, without - threshold.noise_floor);
-  return gain.p < threshold.false_alarm / threshold.tried &&
-         gain.mean > threshold.least_gain * excess &&
-         gain.mean > threshold.least_noise * threshold.noise_floor;
+  const double asked_p = threshold.false_alarm / threshold.tried;
+  const double asked_noise = threshold.least_noise * threshold.noise_floor;
+  if (!(gain.p < asked_p)) {
+    return fmt::format("its gain may be chance: p is {:.2g}, below {:.2g} is asked", gain.p,
+                       asked_p);
+  }
+  if (!(gain.mean > threshold.least_gain * excess)) {
+    return fmt::format(
+        "it takes {:.0f} % of the error above the noise, more than {:.0f} % are asked",
+        100 * gain.mean / excess, 100 * threshold.least_gain);
+  }
+  if (!(gain.mean > asked_noise)) {
+    return fmt::format("it gains {:.3g} mm, more than {:.3g} mm, a part of the noise, are asked",
+                       1e3 * gain.mean, 1e3 * asked_noise);
+  }
+  return "";
 }
 
 bool IsNear(double error, double chosen_error) { return error < kNear * chosen_error; }
@@ -60,6 +79,15 @@ bool IsAccepted(const PairedErrors& common, const PairedErrors& springs, Eigen::
       !IsFreeForm(parameters) && IsWorthIt(common.gain, common.without, simply) &&
       springs.with < springs.without + threshold.least_noise * threshold.noise_floor;
   return without_springs || IsWorthIt(springs.gain, springs.without, threshold);
+}
+
+std::string WhyNotAccepted(const PairedErrors& common, const PairedErrors& springs,
+                           const Threshold& threshold) {
+  if (common.with >= common.without) {
+    return "it predicts held-out frames no better than common factors without it";
+  }
+  return fmt::format("held out {:.2f} mm without it, {:.2f} mm with it: {}", 1e3 * springs.without,
+                     1e3 * springs.with, WhyNotWorthIt(springs.gain, springs.without, threshold));
 }
 
 std::size_t ChooseSimplest(const std::vector<Scored>& fits, int block, std::uint64_t seed) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "diagnosis/block_bootstrap.h"
@@ -56,6 +57,8 @@ struct Threshold {
 
 // Whether the gain over a fit with the error `without` is no chance, and large enough.
 bool IsWorthIt(const BootstrapResult& gain, double without, const Threshold& threshold);
+// The first of these conditions that does not hold, with its numbers, in words; empty if all hold.
+std::string WhyNotWorthIt(const BootstrapResult& gain, double without, const Threshold& threshold);
 
 // Whether another effect came so near to the chosen one that the next search is made beside each.
 bool IsNear(double error, double chosen_error);
@@ -72,6 +75,9 @@ struct PairedErrors {
 // springs without it predict no better.
 bool IsAccepted(const PairedErrors& common, const PairedErrors& springs, Eigen::Index parameters,
                 const Threshold& threshold);
+// Why an effect that is not accepted is not, in words.
+std::string WhyNotAccepted(const PairedErrors& common, const PairedErrors& springs,
+                           const Threshold& threshold);
 
 // A fit of so many parameters with its errors on held-out frames, one after the other, and their
 // mean.

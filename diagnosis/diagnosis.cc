@@ -170,6 +170,7 @@ void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
   result->before = before.track;
   result->before_track = before.held;
   result->rankings = findings.rankings;
+  result->refusal = findings.refusal;
   result->after = accepted.track;
   result->after_track = accepted.held;
   result->gain = GainOf(fitting, seed, before.held, accepted.held);

@@ -54,7 +54,8 @@ struct EffectCandidate {
   std::string name;
   double score = 0;                // part of the squared misfit that the linearised fit takes away
   std::optional<TrackPair> refit;  // only the best few are refitted
-  BootstrapResult gain;            // the gain on held-out frames over the refit without it
+  double without = 0;              // error of the refit without it on held-out frames, m
+  BootstrapResult gain;            // the gain over that
   EffectValues values;             // the refitted values
   bool alike = false;              // as good as the effect that was chosen, by one standard error
 };
@@ -75,6 +76,7 @@ struct Diagnosis {
   // One for each value of `effects`, one effect after the other.
   std::vector<ValueCertainty> certainty;
   std::vector<EffectRanking> rankings;  // one for each round; i effects are accepted before round i
+  std::string refusal;  // "EFFECT: why it helps too little to be added"; empty: none was left over
   std::optional<Unexplained> unexplained;
   FrameTrack before_track, after_track;  // track errors on held-out frames
   // Forces that the model lacks on the first recording, without and with the effects.

@@ -195,12 +195,13 @@ Attempt FitSprings(const Inquiry& inquiry, Attempt attempt, int round, const Wor
   return attempt;
 }
 
-bool Passes(const Inquiry& inquiry, const Attempt& attempt) {
-  if (!attempt.found()) return false;
-  return IsAccepted(inquiry.Compare(attempt.beside.common, attempt.chosen()),
-                    inquiry.Compare(attempt.beside.accepted, attempt.with_springs),
-                    NewParametersOf(attempt.chosen()),
-                    inquiry.ThresholdFor(attempt.search.verdicts.size()));
+// Why the effect that was found is not accepted, "NAME: ..."; empty if it is.
+std::string Refusal(const Inquiry& inquiry, const Attempt& attempt) {
+  const PairedErrors common = inquiry.Compare(attempt.beside.common, attempt.chosen());
+  const PairedErrors springs = inquiry.Compare(attempt.beside.accepted, attempt.with_springs);
+  const Threshold threshold = inquiry.ThresholdFor(attempt.search.verdicts.size());
+  if (IsAccepted(common, springs, NewParametersOf(attempt.chosen()), threshold)) return "";
+  return NameOf(attempt.chosen()) + ": " + WhyNotAccepted(common, springs, threshold);
 }
 
 // The best other effect of the search, if it is near the one that is accepted.
@@ -233,10 +234,11 @@ Standing Accept(const Inquiry& inquiry, const Attempt& attempt, const WorkShare&
 EffectRanking Rank(const Inquiry& inquiry, const Attempt& attempt) {
   EffectRanking candidates;
   for (const EffectTrace& trace : attempt.search.traces) {
-    EffectCandidate candidate{trace.effect->name(), trace.score, {}, {}, {}, false};
+    EffectCandidate candidate{.name = trace.effect->name(), .score = trace.score};
     for (const Verdict& verdict : attempt.search.verdicts) {
       if (NameOf(verdict) != candidate.name) continue;
       candidate.refit = verdict.track;
+      candidate.without = attempt.beside.common.track.held;
       candidate.gain = inquiry.Gain(attempt.beside.common, verdict);
       candidate.values = verdict.system.effects.back();
       candidate.alike = IsAlike(inquiry.Gain(verdict, attempt.chosen()));
@@ -290,7 +292,8 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
     attempt = FitSprings(inquiry, attempt, round, stage.Part(kSearchPart, kTrainingPart));
     if (round == 0) findings.before = attempt.beside.accepted;
     standing = attempt.beside;
-    if (!Passes(inquiry, attempt)) break;
+    if (attempt.found()) findings.refusal = Refusal(inquiry, attempt);
+    if (!attempt.found() || !findings.refusal.empty()) break;
     standing = Accept(inquiry, attempt, stage.Part(kTrainingPart, 1));
   }
   findings.common = standing.common;

@@ -5,6 +5,7 @@
 #define PHYSPRING_DIAGNOSIS_FIND_EFFECTS_H_
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "diagnosis/diagnosis.h"
@@ -16,6 +17,7 @@ struct Findings {
   Verdict before, accepted;             // without any new effect, and with those that were accepted
   Verdict common;                       // as `accepted`, without the springs' own parameters
   std::vector<EffectRanking> rankings;  // one for each round
+  std::string refusal;  // why the best effect of the last round is not added; empty: there was none
 };
 
 // `known`: effects that the twin has besides the body's own. `trained`: the twin as it came, taken

@@ -78,6 +78,7 @@ Json RankingJson(const EffectRanking& ranking) {
         {{"name", candidate.name},
          {"score", candidate.score},
          {"heldout", candidate.refit ? Number(candidate.refit->held) : Json(nullptr)},
+         {"without", candidate.refit ? Number(candidate.without) : Json(nullptr)},
          {"parameters", candidate.refit ? ParametersOf(candidate.values) : Json(nullptr)}});
   }
   return list;
@@ -126,6 +127,7 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
        {{"mean", diagnosis.gain.mean}, {"low", diagnosis.gain.low}, {"high", diagnosis.gain.high}}},
       {"candidates", RankingJson(diagnosis.rankings.at(0))},
       {"later_candidates", later},
+      {"refusal", diagnosis.refusal.empty() ? Json(nullptr) : Json(diagnosis.refusal)},
       {"confounded", Confounded(diagnosis)},
       {"unexplained", UnexplainedJson(diagnosis)},
       {"residual_force",

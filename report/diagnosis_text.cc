@@ -136,16 +136,19 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
     for (const EffectCandidate& candidate : diagnosis.rankings[i]) {
       if (!candidate.refit) continue;
-      text +=
-          fmt::format("  {:<18} linearised {:5.1f} % of the misfit; held out {} ({}; p {:.2g})\n",
-                      candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
-                      DescribeGain(candidate.gain), candidate.gain.p);
+      text += fmt::format(
+          "  {:<18} linearised {:5.1f} % of the misfit; held out {} instead of {} ({}; "
+          "p {:.2g})\n",
+          candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
+          InMillimetres(candidate.without), DescribeGain(candidate.gain), candidate.gain.p);
     }
     if (i < diagnosis.effects.size()) {
       text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
                           DescribeParameters(diagnosis, i));
     } else if (!diagnosis.rankings[i].empty()) {
-      text += "added: none, since none surely takes enough of the error above the noise\n";
+      text += diagnosis.refusal.empty()
+                  ? "added: none, since none helps on the held-out frames\n"
+                  : fmt::format("added: none; the best is {}\n", diagnosis.refusal);
     }
   }
   if (!diagnosis.effects.empty()) text += DescribeCertainty(diagnosis) + "\n";

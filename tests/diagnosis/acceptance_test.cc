@@ -102,6 +102,24 @@ TEST(IsWorthIt, BeatsChanceAmongAllThatWereTried) {
   EXPECT_TRUE(IsWorthIt(Gain(4, 0.011), 5, one));
 }
 
+TEST(WhyNotWorthIt, NamesTheConditionThatFailsWithItsNumbers) {
+  EXPECT_EQ(WhyNotWorthIt(Gain(1.7), 5, kThreshold), "");
+  EXPECT_EQ(WhyNotWorthIt(Gain(1.2), 5, kThreshold),
+            "it takes 30 % of the error above the noise, more than 40 % are asked");
+  EXPECT_EQ(WhyNotWorthIt(Gain(4, 0.03), 5, kThreshold),
+            "its gain may be chance: p is 0.03, below 0.01 is asked");
+  EXPECT_EQ(WhyNotWorthIt(Gain(0.19), 0.9, kThreshold),
+            "it gains 190 mm, more than 200 mm, a part of the noise, are asked");
+}
+
+TEST(WhyNotAccepted, TellsTheErrorsThatWereCompared) {
+  EXPECT_EQ(WhyNotAccepted(Compare(5, 5), Compare(5, 1), kThreshold),
+            "it predicts held-out frames no better than common factors without it");
+  EXPECT_EQ(WhyNotAccepted(Compare(5, 4), Compare(5, 3.8), kThreshold),
+            "held out 5000.00 mm without it, 3800.00 mm with it: it takes 30 % of the error above "
+            "the noise, more than 40 % are asked");
+}
+
 TEST(IsAccepted, PredictsBetterWithCommonFactorsAlone) {
   EXPECT_FALSE(IsAccepted(Compare(5, 5), Compare(5, 1), 2, kThreshold));
   EXPECT_TRUE(IsAccepted(Compare(5, 4.9), Compare(5, 1), 2, kThreshold));
