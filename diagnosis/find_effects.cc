@@ -234,7 +234,9 @@ Standing Accept(const Inquiry& inquiry, const Attempt& attempt, const WorkShare&
 EffectRanking Rank(const Inquiry& inquiry, const Attempt& attempt) {
   EffectRanking candidates;
   for (const EffectTrace& trace : attempt.search.traces) {
-    EffectCandidate candidate{.name = trace.effect->name(), .score = trace.score};
+    EffectCandidate candidate;
+    candidate.name = trace.effect->name();
+    candidate.score = trace.score;
     for (const Verdict& verdict : attempt.search.verdicts) {
       if (NameOf(verdict) != candidate.name) continue;
       candidate.refit = verdict.track;
