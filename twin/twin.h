@@ -30,8 +30,9 @@ struct TwinLevel {
 
 // The ground of the recordings that a twin was trained on.
 struct TrainedGround {
-  bool known = false;                    // files of older programs do not say
-  std::optional<Eigen::Vector4d> plane;  // (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1, or none
+  bool known = false;  // files of older programs do not say
+  std::optional<Eigen::Vector4d>
+      plane;  // (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1, or none
 };
 
 struct Twin {

@@ -114,7 +114,8 @@ Npz StoreTwin(const Twin& twin, const std::string& path) {
   arrays["gravity"] = NpzArray::Doubles({3}, twin.gravity.data());
   if (twin.ground.known) {
     const auto& plane = twin.ground.plane;
-    arrays["ground"] = plane ? NpzArray::Doubles({4}, plane->data()) : NpzArray::Doubles({0}, nullptr);
+    arrays["ground"] =
+        plane ? NpzArray::Doubles({4}, plane->data()) : NpzArray::Doubles({0}, nullptr);
   }
   if (twin.order.size() > 0) arrays["order"] = StoreVector(twin.order);
   for (std::size_t n = 0; n < twin.levels.size(); ++n) {
@@ -244,7 +245,8 @@ TrainedGround ReadTrainedGround(NpzFields* fields) {
   const Eigen::VectorXd plane = fields->Vector("ground", "ground");
   if (plane.size() == 0) return {.known = true, .plane = {}};
   if (plane.size() != 4) {
-    fields->Fail("ground", fmt::format("has {} numbers, expected 4 (a, b, c, d), or none", plane.size()));
+    fields->Fail("ground",
+                 fmt::format("has {} numbers, expected 4 (a, b, c, d), or none", plane.size()));
   }
   const double length = plane.head<3>().norm();
   if (std::abs(length - 1) > kUnit) {

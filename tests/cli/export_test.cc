@@ -31,7 +31,8 @@ class Export : public testing::Test {
 TEST_F(Export, WritesAFolderAndTellsWhatIsInIt) {
   const ProgramResult result = Run({});
   EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_EQ(result.errors.find("warning: " + TwinPath() + ": the twin does not say what ground"), 0u)
+  EXPECT_EQ(result.errors.find("warning: " + TwinPath() + ": the twin does not say what ground"),
+            0u)
       << result.errors;
   EXPECT_NE(result.output.find("level0.xml: 40 nodes"), std::string::npos) << result.output;
   EXPECT_NE(result.output.find("level1.xml: 20 nodes"), std::string::npos) << result.output;
