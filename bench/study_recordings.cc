@@ -147,7 +147,9 @@ SceneEffects MakeEffect(const std::string& name, double size, const Lattice& lat
   SceneEffects effects;
   if (!effect) return effects;
   const EffectAmounts amounts = effect->Trial(trial);
-  for (const auto& [key, value] : amounts.all()) effects[name + "." + key] = value;
+  for (const auto& [key, value] : amounts.all()) {
+    effects[fmt::format("{}.{}", name, key)] = value;
+  }
   return effects;
 }
 
