@@ -62,7 +62,7 @@ Recording ComesToRest(int frames, int train_frames, int last, double noise) {
     const double sign = frame % 2 == 0 ? 1 : -1;
     const bool moves = static_cast<int>(frame) <= last;
     recording.points[frame](0, 0) = moves ? 0.1 * sign : noise * sign;
-    recording.controllers.push_back(Points::Zero(3, 1));
+    recording.controllers.emplace_back(Points::Zero(3, 1));
   }
   return recording;
 }

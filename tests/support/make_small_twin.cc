@@ -6,10 +6,10 @@
 
 #include "tests/support/small_twin.h"
 
-int main(int argc, char** argv) {
-  using namespace physpring;
-  if (argc != 2) return 2;
-  const std::filesystem::path folder = argv[1];
+namespace physpring {
+namespace {
+
+void WriteInto(const std::filesystem::path& folder) {
   Twin heavy = SmallTwin(1);
   heavy.levels[0].system.mass.head(8) *= 3;
   const std::string swing = folder / "swing.npz";
@@ -18,5 +18,13 @@ int main(int argc, char** argv) {
   Twin twin = SmallTwin(2);
   twin.trained_on = {{"swing", ReadRecording(swing).hash, 10}};
   WriteTwin(twin, folder / "small.twin.npz");
+}
+
+}  // namespace
+}  // namespace physpring
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  physpring::WriteInto(argv[1]);
   return 0;
 }
