@@ -118,13 +118,6 @@ std::string Mjcf(const Lattice& lattice) {
       kTimestep, bodies, tendons);
 }
 
-const SceneEffect* FindSceneEffect(const std::string& name) {
-  for (const SceneEffect* effect : AllSceneEffects()) {
-    if (effect->name() == name) return effect;
-  }
-  return nullptr;
-}
-
 // A random place and direction; `size` is about 1.
 EffectTrial DrawTrial(double size, const Lattice& lattice, Random* random) {
   const Eigen::Index nodes = lattice.nodes.cols();

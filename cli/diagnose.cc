@@ -160,8 +160,7 @@ void Run(const DiagnoseArguments& arguments) {
   }
   for (std::vector<Recording>* recordings : {&data.recordings, &judged}) {
     for (Recording& recording : *recordings) {
-      const std::string odd = OddNumbering(twin, recording);
-      if (!odd.empty()) recording.warnings.push_back(recording.name + ": " + odd);
+      WarnOfOddNumbering(twin, recording.name, &recording);
     }
     PrintWarnings(WarningsOf(*recordings));
   }

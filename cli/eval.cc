@@ -46,8 +46,7 @@ EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
   evaluated.path = entry.path;
   evaluated.recording = ReadRecording(entry.path);
   evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
-  const std::string odd = OddNumbering(twin, evaluated.recording);
-  if (!odd.empty()) evaluated.recording.warnings.push_back(entry.path + ": " + odd);
+  WarnOfOddNumbering(twin, entry.path, &evaluated.recording);
   evaluated.result = Evaluate(twin, evaluated.recording, options);
   return evaluated;
 }

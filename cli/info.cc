@@ -7,6 +7,7 @@
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/output_files.h"
+#include "cli/warnings.h"
 #include "report/info_text.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
@@ -32,9 +33,7 @@ Json Inspect(const std::string& path) {
   if (arrays.contains("points")) {
     const Recording recording = ReadRecording(path);
     fmt::print("{}: a recording\n{}", path, DescribeRecording(recording));
-    for (const std::string& warning : recording.warnings) {
-      fmt::print(stderr, "warning: {}\n", warning);
-    }
+    PrintWarnings(recording.warnings);
     return RecordingToJson(recording);
   }
   throw Error(fmt::format(

@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/warnings.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -56,9 +57,7 @@ void Run(const std::string& scene, const std::string& output, bool force,
   ExpectNew(output, force);
   const Recording recording = RecordScene(scene, options);
   WriteRecording(recording, output);
-  for (const std::string& warning : recording.warnings) {
-    fmt::print(stderr, "warning: {}\n", warning);
-  }
+  PrintWarnings(recording.warnings);
   fmt::print("{}: {} frames at {} fps, {} points, {} interior, {} controllers, {:.4g} kg\n", output,
              recording.frame_count(), recording.fps, recording.point_count(),
              recording.interior_count(), recording.controller_count(), recording.mass);

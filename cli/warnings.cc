@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <set>
 
 namespace physpring {
 namespace {
 
 struct Alike {
-  std::string first;  // the file that it is said of first
-  int more = 0;
+  std::string first;            // the file that it is said of first
+  std::set<std::string> files;  // all of them
 };
 
 }  // namespace
@@ -23,19 +24,17 @@ std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     const std::size_t colon = std::min(warning.find(": "), warning.size());
     const std::string what = warning.substr(colon);
-    const auto [found, is_new] = files.try_emplace(what, Alike{warning.substr(0, colon)});
-    if (is_new) {
-      order.push_back(what);
-    } else {
-      ++found->second.more;
-    }
+    const std::string file = warning.substr(0, colon);
+    const auto [found, is_new] = files.try_emplace(what, Alike{file, {}});
+    if (is_new) order.push_back(what);
+    found->second.files.insert(file);
   }
   std::vector<std::string> joined;
   for (const std::string& what : order) {
     const Alike& alike = files[what];
-    joined.push_back(alike.more == 0
-                         ? alike.first + what
-                         : fmt::format("{} and {} more{}", alike.first, alike.more, what));
+    const std::size_t more = alike.files.size() - 1;
+    joined.push_back(more == 0 ? alike.first + what
+                               : fmt::format("{} and {} more{}", alike.first, more, what));
   }
   return joined;
 }

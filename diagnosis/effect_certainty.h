@@ -24,6 +24,10 @@ struct ValueCertainty {
   double shared = 0;
   // The part of its variance that is its prior's: near 1, the recordings say nothing about it.
   double unknown = 0;
+
+  double HalfInterval() const { return 1.96 * error; }  // half a 95 % interval
+  bool IsHardlyTold() const { return shared > 0.95; }   // from other parameters
+  bool IsUntold() const { return unknown > 0.5; }       // by the recordings
 };
 
 // The certainty of the entries of x from `first` on, in the entries' units, from the Jacobian and

@@ -72,14 +72,15 @@ void AddFloorLook(XmlElement* mujoco) {
       {{"name", "floor"}, {"texture", "floor"}, {"texuniform", "true"}, {"texrepeat", "10 10"}});
 }
 
-void AddSurroundings(const LevelPlan& plan, const Extent& extent, XmlElement* mujoco) {
+void AddSurroundings(const std::optional<Eigen::Vector4d>& ground, const Extent& extent,
+                     XmlElement* mujoco) {
   XmlElement* worldbody = AddElement(mujoco, "worldbody");
   AddElement(worldbody, "light",
              {{"pos", Numbers(extent.centre + 3 * extent.size * extent.up)},
               {"dir", Numbers(-extent.up)},
               {"cutoff", "60"},
               {"exponent", "1"}});
-  if (const auto ground = GroundOf(plan)) {
+  if (ground) {
     const Eigen::Vector3d normal = ground->head<3>();
     AddElement(worldbody, "geom",
                {{"name", "floor"},
@@ -123,8 +124,9 @@ std::string FormatScene(const LevelPlan& plan, const std::string& level_file) {
   AddElement(mujoco, "include", {{"file", level_file}});
   const Extent extent = MeasureExtent(plan);
   AddOptions(plan, extent, mujoco);
-  if (GroundOf(plan)) AddFloorLook(mujoco);
-  AddSurroundings(plan, extent, mujoco);
+  const std::optional<Eigen::Vector4d> ground = GroundOf(plan);
+  if (ground) AddFloorLook(mujoco);
+  AddSurroundings(ground, extent, mujoco);
   AddKeyframes(plan, mujoco);
   return Print(document);
 }

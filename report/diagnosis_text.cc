@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "twin/effects/registry.h"
+#include "report/diagnosis/effect_words.h"
 
 namespace physpring {
 namespace {
@@ -20,12 +20,18 @@ std::string Join(const std::vector<std::string>& names, const char* none) {
 
 }  // namespace
 
-std::vector<std::string> Confounded(const Diagnosis& diagnosis) {
-  std::vector<std::string> names;
+std::vector<const EffectCandidate*> ConfoundedCandidates(const Diagnosis& diagnosis) {
+  std::vector<const EffectCandidate*> candidates;
   for (const EffectCandidate& candidate : diagnosis.rankings.at(0)) {
     if (diagnosis.effects.empty() || candidate.name == diagnosis.effects[0].name) continue;
-    if (candidate.alike) names.push_back(candidate.name);
+    if (candidate.alike) candidates.push_back(&candidate);
   }
+  return candidates;
+}
+
+std::vector<std::string> Confounded(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const EffectCandidate* one : ConfoundedCandidates(diagnosis)) names.push_back(one->name);
   return names;
 }
 
@@ -39,25 +45,17 @@ std::string DescribeGain(const BootstrapResult& gain) {
 }
 
 std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect) {
-  std::size_t first = 0;
-  for (std::size_t n = 0; n < effect; ++n) {
-    first += static_cast<std::size_t>(diagnosis.effects[n].values.size());
-  }
-  const EffectValues& values = diagnosis.effects[effect];
-  std::string text;
-  Eigen::Index i = 0;
-  for (const EffectParameter& parameter : GetEffect(values.name).parameters()) {
-    text += (text.empty() ? "" : ", ") + parameter.key;
-    for (int n = 0; n < parameter.count; ++n, ++i) {
-      text += fmt::format(" {:.3g}", values.values[i]);
-      const std::size_t at = first + static_cast<std::size_t>(i);
-      if (at >= diagnosis.certainty.size()) continue;
-      text += fmt::format(" ± {:.2g}", 1.96 * diagnosis.certainty[at].error);
-      if (diagnosis.certainty[at].unknown > 0.5) {
-        text += " (not told by the recordings)";
-      } else if (diagnosis.certainty[at].shared > 0.95) {
-        text += " (hardly told from other parameters)";
-      }
+  std::string text, key;
+  for (const ValueRange& range : RangesOf(diagnosis, effect)) {
+    if (range.key != key) text += (text.empty() ? "" : ", ") + range.key;
+    key = range.key;
+    text += fmt::format(" {:.3g}", range.value);
+    if (!range.certainty) continue;
+    text += fmt::format(" ± {:.2g}", range.certainty->HalfInterval());
+    if (range.certainty->IsUntold()) {
+      text += " (not told by the recordings)";
+    } else if (range.certainty->IsHardlyTold()) {
+      text += " (hardly told from other parameters)";
     }
   }
   return text;

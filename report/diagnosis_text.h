@@ -13,7 +13,8 @@ namespace physpring {
 
 std::string FormatDiagnosisText(const Diagnosis& diagnosis);
 
-// The effects that the held-out frames cannot tell from the first one accepted.
+// The effects that the held-out frames cannot tell from the first one accepted, and their names.
+std::vector<const EffectCandidate*> ConfoundedCandidates(const Diagnosis& diagnosis);
 std::vector<std::string> Confounded(const Diagnosis& diagnosis);
 
 std::string InMillimetres(double metres);                    // "1.20 mm", or "no data"

@@ -41,9 +41,7 @@ void UndeclaredEffects::ExpectPossible(const std::string& where) const {
   std::vector<std::string> possible;
   std::string refused;
   for (const EffectKey& key : EffectKeys()) {
-    const auto of_key = [&](const SceneEffect* e) { return e->name() == key.effect(); };
-    const auto& all = AllSceneEffects();
-    const SceneEffect* effect = *std::find_if(all.begin(), all.end(), of_key);
+    const SceneEffect* effect = FindSceneEffect(key.effect());
     const auto given = std::find_if(given_.begin(), given_.end(),
                                     [&](const Given& g) { return g.effect == effect; });
     const std::string parameter = key.name.substr(key.effect().size() + 1);

@@ -16,6 +16,13 @@ namespace physpring {
 std::string OddNumbering(const Recording& first, const Recording& recording);
 std::string OddNumbering(const Twin& twin, const Recording& recording);
 
+// Adds it to the warnings of `recording`, "WHERE: ...".
+template <class Known>  // Recording or Twin
+void WarnOfOddNumbering(const Known& known, const std::string& where, Recording* recording) {
+  const std::string odd = OddNumbering(known, *recording);
+  if (!odd.empty()) recording->warnings.push_back(where + ": " + odd);
+}
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_NUMBERING_H_

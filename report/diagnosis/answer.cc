@@ -13,8 +13,6 @@
 namespace physpring {
 namespace {
 
-constexpr double kHardlyTold = 0.95;  // of ValueCertainty's shared
-
 // "a", "a and b", "a, b and c".
 std::string List(std::vector<std::string> words) {
   const std::string last = words.back();
@@ -70,7 +68,8 @@ std::vector<std::string> AmountsHardlyTold(const Diagnosis& diagnosis) {
     const int amount = PictureOf(diagnosis, diagnosis.effects[n]).amount;
     if (amount < 0) continue;
     const ValueRange range = RangesOf(diagnosis, n)[static_cast<std::size_t>(amount)];
-    if (!range.certainty || (range.certainty->shared <= kHardlyTold && !range.IsUntold())) continue;
+    if (!range.certainty) continue;
+    if (!range.certainty->IsHardlyTold() && !range.certainty->IsUntold()) continue;
     amounts.push_back(
         fmt::format("the {} of {}", range.label, SpacedName(diagnosis.effects[n].name)));
   }
@@ -84,12 +83,12 @@ std::string FormatUntold(const Diagnosis& diagnosis) {
     const std::string name = SpacedName(diagnosis.effects[n].name);
     for (const ValueRange& range : RangesOf(diagnosis, n)) {
       if (!range.certainty) continue;
-      if (range.IsUntold()) {
+      if (range.certainty->IsUntold()) {
         items += fmt::format(
             "<li><b>{}</b> of {}: the recordings do not tell it. It changes the motion too "
             "little.</li>",
             range.label, name);
-      } else if (range.certainty->shared > kHardlyTold) {
+      } else if (range.certainty->IsHardlyTold()) {
         items += fmt::format(
             "<li><b>{}</b> of {}: other parameters together can do {:.0f} % of what it does to "
             "the motion.</li>",
@@ -102,16 +101,12 @@ std::string FormatUntold(const Diagnosis& diagnosis) {
 
 std::string FormatAlike(const Diagnosis& diagnosis) {
   std::string items;
-  for (const EffectCandidate& candidate : diagnosis.rankings.at(0)) {
-    if (!candidate.alike || diagnosis.effects.empty() ||
-        candidate.name == diagnosis.effects[0].name) {
-      continue;
-    }
+  for (const EffectCandidate* candidate : ConfoundedCandidates(diagnosis)) {
     items += fmt::format(
         "<li><b>{}</b> instead of {}: {}. Its error on held-back frames is {} mm, within one "
         "standard error of the best.</li>",
-        SpacedName(candidate.name), SpacedName(diagnosis.effects[0].name),
-        PictureOf(diagnosis, candidate.values).lacks, InMm(candidate.refit->held));
+        SpacedName(candidate->name), SpacedName(diagnosis.effects[0].name),
+        PictureOf(diagnosis, candidate->values).lacks, InMm(candidate->refit->held));
   }
   return items;
 }

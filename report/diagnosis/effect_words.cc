@@ -13,8 +13,6 @@
 namespace physpring {
 namespace {
 
-constexpr double kInterval = 1.96;  // standard errors: half a 95 % interval
-
 // At a bound that is no "not at all".
 bool IsAtBound(const EffectParameter& parameter, double value) {
   const double near = parameter.spacing == EffectParameter::Spacing::kLogarithmic
@@ -29,8 +27,8 @@ ValueRange RangeOf(const EffectParameter& parameter, double value,
       parameter.key, LabelOfKey(parameter.key),  UnitOfKey(parameter.key), value, value, value,
       certainty,     IsAtBound(parameter, value)};
   if (!certainty) return range;
-  range.low = std::max(parameter.low, value - kInterval * certainty->error);
-  range.high = std::min(parameter.high, value + kInterval * certainty->error);
+  range.low = std::max(parameter.low, value - certainty->HalfInterval());
+  range.high = std::min(parameter.high, value + certainty->HalfInterval());
   return range;
 }
 

@@ -20,9 +20,6 @@ struct ValueRange {
   double value, low, high;
   std::optional<ValueCertainty> certainty;  // none: not known, and low = high = value
   bool at_bound = false;                    // of what was searched, where that is no "not at all"
-
-  // Whether the recordings say nothing about it.
-  bool IsUntold() const { return certainty && certainty->unknown > 0.5; }
 };
 
 // Of the effect with that index.

@@ -54,10 +54,10 @@ std::string FormatValues(const std::vector<ValueRange>& ranges) {
       "<div class=\"wide\"><table><thead><tr><th></th><th>value</th><th>95 % interval</th></tr>"
       "</thead><tbody>\n";
   for (const ValueRange& range : ranges) {
-    const std::string interval = range.IsUntold() ? "not told by the recordings"
-                                 : !range.certainty
-                                     ? "–"
-                                     : FormatInterval(range.low, range.high, range.unit);
+    const std::string interval =
+        range.certainty && range.certainty->IsUntold() ? "not told by the recordings"
+        : !range.certainty                             ? "–"
+                           : FormatInterval(range.low, range.high, range.unit);
     html += fmt::format("<tr><th>{}</th><td>{}{}</td><td>{}</td></tr>\n", range.label,
                         FormatQuantity(range.value, range.unit),
                         range.at_bound ? " (at the edge)" : "", interval);

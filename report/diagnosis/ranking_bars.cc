@@ -25,9 +25,7 @@ bool IsDrawn(const EffectCandidate& candidate) {
 }
 
 // The error without the effect, mm: what its gain is counted from.
-double WithoutIt(const EffectCandidate& candidate) {
-  return 1e3 * (candidate.refit->held + candidate.gain.mean);
-}
+double WithoutIt(const EffectCandidate& candidate) { return 1e3 * candidate.without; }
 
 double BaselineOf(const EffectRanking& ranking) {
   double baseline = 0;

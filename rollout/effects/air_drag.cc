@@ -40,7 +40,7 @@ class AirDrag : public SceneEffect {
   static double ForceOfWind(const SceneBody& body, mjModel* model) {
     const mjOption before = model->opt;
     const DataPtr data = MakeData(*model);
-    const std::set<int> bodies = body.Carriers();
+    const std::set<int>& bodies = body.Carriers();
     double most = 0;
     for (int axis = 0; axis < 3; ++axis) {
       model->opt.density = 1;

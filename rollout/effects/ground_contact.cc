@@ -34,7 +34,7 @@ class GroundContact : public SceneEffect {
   // The sliding friction of the body's flex or geoms.
   static std::vector<mjtNum*> FrictionOf(const SceneBody& body, mjModel* model) {
     if (body.of_flex()) return {model->flex_friction};
-    const std::set<int> carriers = body.Carriers();
+    const std::set<int>& carriers = body.Carriers();
     std::vector<mjtNum*> parts;
     for (int geom = 0; geom < model->ngeom; ++geom) {
       if (carriers.contains(model->geom_bodyid[geom])) {

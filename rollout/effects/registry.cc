@@ -33,4 +33,11 @@ const std::vector<const SceneEffect*>& AllSceneEffects() {
   return kPointers;
 }
 
+const SceneEffect* FindSceneEffect(const std::string& name) {
+  for (const SceneEffect* effect : AllSceneEffects()) {
+    if (effect->name() == name) return effect;
+  }
+  return nullptr;
+}
+
 }  // namespace physpring

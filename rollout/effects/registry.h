@@ -3,6 +3,7 @@
 #ifndef PHYSPRING_ROLLOUT_EFFECTS_REGISTRY_H_
 #define PHYSPRING_ROLLOUT_EFFECTS_REGISTRY_H_
 
+#include <string>
 #include <vector>
 
 #include "rollout/effects/scene_effect.h"
@@ -10,6 +11,9 @@
 namespace physpring {
 
 const std::vector<const SceneEffect*>& AllSceneEffects();
+
+// The effect of that name; null if there is none.
+const SceneEffect* FindSceneEffect(const std::string& name);
 
 }  // namespace physpring
 

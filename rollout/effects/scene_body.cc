@@ -12,6 +12,7 @@ namespace physpring {
 
 SceneBody::SceneBody(const mjModel& plain, const SoftPoints& soft)
     : plain_(plain), soft_(soft), particles_(soft.Particles()) {
+  for (const int element : particles_) carriers_.insert(BodyOf(plain, soft, element));
   const DataPtr data = MakeData(plain);
   mj_kinematics(&plain, data.get());
   mj_comPos(&plain, data.get());
@@ -24,12 +25,6 @@ SceneBody::SceneBody(const mjModel& plain, const SoftPoints& soft)
 
 int SceneBody::CarrierOf(int particle) const {
   return BodyOf(plain_, soft_, particles_[static_cast<std::size_t>(particle)]);
-}
-
-std::set<int> SceneBody::Carriers() const {
-  std::set<int> bodies;
-  for (const int element : particles_) bodies.insert(BodyOf(plain_, soft_, element));
-  return bodies;
 }
 
 std::vector<int> SceneBody::Grounds() const {

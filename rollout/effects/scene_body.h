@@ -28,7 +28,7 @@ class SceneBody {
 
   // The body that carries a particle, and all such bodies.
   int CarrierOf(int particle) const;
-  std::set<int> Carriers() const;
+  const std::set<int>& Carriers() const { return carriers_; }
 
   // The grounds that the body can collide with: geoms.
   std::vector<int> Grounds() const;
@@ -54,6 +54,7 @@ class SceneBody {
   const mjModel& plain_;
   const SoftPoints& soft_;
   std::vector<int> particles_;  // elements, points before interior
+  std::set<int> carriers_;
   Points reference_, held_, vertices_, sites_;
 };
 

@@ -39,7 +39,7 @@ Eigen::Vector3d EffectAmounts::Vector(const std::string& stem, const std::string
 
 void AddToBodies(const SceneBody& body, const mjModel& model, mjData* data,
                  const std::function<Eigen::Vector3d(int)>& force_at) {
-  const std::set<int> carriers = body.Carriers();
+  const std::set<int>& carriers = body.Carriers();
   double total = 0;
   for (const int carrier : carriers) total += model.body_mass[carrier];
   for (const int carrier : carriers) {

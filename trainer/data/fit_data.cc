@@ -59,8 +59,7 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
                               entry.path, data.recordings.back().train_frames - 1));
     }
     ExpectNew(data.recordings, entries);
-    const std::string odd = OddNumbering(data.recordings[0], data.recordings.back());
-    if (!odd.empty()) data.recordings.back().warnings.push_back(entry.path + ": " + odd);
+    WarnOfOddNumbering(data.recordings[0], entry.path, &data.recordings.back());
     const int own = -static_cast<int>(data.recordings.size());
     data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
                                                                         : own);
