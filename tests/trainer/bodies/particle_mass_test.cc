@@ -12,7 +12,7 @@ namespace {
 Points Grid(int nx, int ny, int nz) {
   Points grid(3, nx * ny * nz);
   for (int i = 0; i < grid.cols(); ++i) {
-    grid.col(i) = 0.01 * Eigen::Vector3d(i % nx, i / nx % ny, i / (nx * ny));
+    grid.col(i) = 0.01 * Eigen::Vector3i(i % nx, i / nx % ny, i / (nx * ny)).cast<double>();
   }
   return grid;
 }
