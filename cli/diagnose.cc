@@ -162,7 +162,7 @@ void Run(const DiagnoseArguments& arguments) {
     for (Recording& recording : *recordings) {
       WarnOfOddNumbering(twin, recording.name, &recording);
     }
-    PrintWarnings(WarningsOf(*recordings));
+    PrintRemarks(*recordings);
   }
   const DiagnosisRecordings chosen = ChooseRecordings(data, judged);
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);

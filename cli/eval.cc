@@ -84,12 +84,11 @@ void Run(const EvalArguments& arguments) {
     evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], options);
   });
 
-  std::vector<std::string> warnings;
+  std::vector<Recording> recordings;
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {
-    const std::vector<std::string>& own = evaluated.recording.warnings;
-    warnings.insert(warnings.end(), own.begin(), own.end());
+    recordings.push_back(evaluated.recording);
   }
-  PrintWarnings(warnings);
+  PrintRemarks(recordings);
   fmt::print("{}", FormatTables(evaluation));
   WarnIfUseless(evaluation);
   if (!arguments.trajectory.empty()) WriteTrajectories(evaluation, arguments.trajectory);

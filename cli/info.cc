@@ -33,7 +33,7 @@ Json Inspect(const std::string& path) {
   if (arrays.contains("points")) {
     const Recording recording = ReadRecording(path);
     fmt::print("{}: a recording\n{}", path, DescribeRecording(recording));
-    PrintWarnings(recording.warnings);
+    PrintRemarks({recording});
     return RecordingToJson(recording);
   }
   throw Error(fmt::format(

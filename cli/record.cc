@@ -57,7 +57,7 @@ void Run(const std::string& scene, const std::string& output, bool force,
   ExpectNew(output, force);
   const Recording recording = RecordScene(scene, options);
   WriteRecording(recording, output);
-  PrintWarnings(recording.warnings);
+  PrintRemarks({recording});
   fmt::print("{}: {} frames at {} fps, {} points, {} interior, {} controllers, {:.4g} kg\n", output,
              recording.frame_count(), recording.fps, recording.point_count(),
              recording.interior_count(), recording.controller_count(), recording.mass);

@@ -129,7 +129,7 @@ void Run(const ReplayArguments& arguments) {
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
   const Recording recording = ReadRecording(arguments.recording);
-  PrintWarnings(recording.warnings);
+  PrintRemarks({recording});
   ControllerReplay replay;
   try {
     replay = Replay(arguments, recording);

@@ -52,4 +52,13 @@ std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings) {
   return warnings;
 }
 
+void PrintRemarks(const std::vector<Recording>& recordings) {
+  PrintWarnings(WarningsOf(recordings));
+  std::vector<std::string> notes;
+  for (const Recording& recording : recordings) {
+    notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
+  }
+  for (const std::string& note : JoinAlike(notes)) fmt::print(stderr, "note: {}\n", note);
+}
+
 }  // namespace physpring

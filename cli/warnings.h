@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Warnings to the user, "warning: FILE: WHAT". What is said of several files alike
-// is said once: "warning: FILE and 23 more: WHAT".
+// is said once: "warning: FILE and 23 more: WHAT". Notes are the same with "note:".
 #ifndef PHYSPRING_CLI_WARNINGS_H_
 #define PHYSPRING_CLI_WARNINGS_H_
 
@@ -18,6 +18,9 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 
 // Those of all recordings.
 std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings);
+
+// The recordings' warnings and notes.
+void PrintRemarks(const std::vector<Recording>& recordings);
 
 }  // namespace physpring
 

@@ -114,7 +114,9 @@ Json RecordingToJson(const Recording& recording) {
           {"mass_kg", recording.mass},
           {"gravity_m_s2", ToJson(recording.gravity)},
           {"ground", recording.ground ? ToJson(*recording.ground) : Json(nullptr)},
-          {"warnings", recording.warnings}};
+          {"start_speed_m_s", recording.velocity.colwise().norm().maxCoeff()},
+          {"warnings", recording.warnings},
+          {"notes", recording.notes}};
 }
 
 }  // namespace physpring

@@ -15,7 +15,7 @@ namespace {
 // An object may be stretched where it starts, but neighbours of which so many are so many times as
 // far apart are none.
 constexpr double kStretched = 2, kShare = 0.25;
-constexpr int kNeighbours = 3;
+constexpr int kComparedNeighbours = 3;
 
 using Pairs = std::vector<std::array<int, 2>>;
 
@@ -35,7 +35,7 @@ Pairs NearestPairs(const Points& points) {
   const NeighbourSearch search(points);
   Pairs pairs;
   for (int i = 0; i < static_cast<int>(points.cols()); ++i) {
-    for (const Neighbour& neighbour : search.Nearest(points.col(i), kNeighbours + 1)) {
+    for (const Neighbour& neighbour : search.Nearest(points.col(i), kComparedNeighbours + 1)) {
       if (neighbour.index != i) pairs.push_back({i, neighbour.index});
     }
   }

@@ -10,6 +10,10 @@
 #include <string_view>
 
 #include "twin/atomic_file.h"
+#include "twin/checks/objects.h"
+#include "twin/checks/outliers.h"
+#include "twin/checks/plausibility.h"
+#include "twin/checks/start_velocity.h"
 #include "twin/error.h"
 #include "twin/npz.h"
 #include "twin/npz_fields.h"
@@ -165,6 +169,37 @@ void SetStart(const NpzFields& fields, const std::string& path, Recording& recor
   }
 }
 
+void SetVelocity(const std::string& path, Recording& recording) {
+  const std::optional<StartVelocity> start = EstimateStartVelocity(recording);
+  if (!start) return;
+  if (!start->measured) {
+    recording.notes.push_back(path +
+                              ": starts in motion, but most of it is too far from the points to "
+                              "know how it moves: rest is assumed; give 'velocity' if it is known");
+    return;
+  }
+  recording.velocity = start->velocity;
+  recording.notes.push_back(path +
+                            ": starts in motion: velocities are taken from the first frames");
+}
+
+// Works out what is not given, and says what is odd.
+void Check(const std::string& path, bool velocity_given, Recording& recording) {
+  const std::string left_out = LeaveOutOutliers(path, &recording);
+  if (!left_out.empty()) recording.warnings.push_back(left_out);
+  recording.object = FindObjects(recording);
+  if (recording.object.size() > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: shows {} objects that part: no spring joins them; a recording of each "
+                    "makes better twins",
+                    path, recording.object.maxCoeff() + 1));
+  }
+  if (!velocity_given) SetVelocity(path, recording);
+  for (const std::string& oddity : FindOddities(recording)) {
+    recording.warnings.push_back(fmt::format("{}: {}", path, oddity));
+  }
+}
+
 Recording ParseRecording(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
   if (arrays.contains("meta") && !arrays.contains("points"))
@@ -176,6 +211,7 @@ Recording ParseRecording(const Npz& arrays, const std::string& path) {
   ReadConstants(fields, path, recording);
   ReadParticles(fields, recording);
   SetStart(fields, path, recording);
+  Check(path, arrays.contains("velocity"), recording);
   return recording;
 }
 

@@ -27,15 +27,22 @@ struct Recording {
   Points interior;              // 3 x M, m: unobserved particles in frame 0; M may be 0
   Points rest;                  // 3 x (N+M+C), m: stress-free positions; default: frame 0
   bool rest_given = false;      // false: `rest` is frame 0
-  Points velocity;              // 3 x (N+M), m/s: at frame 0; default: 0
+  Points velocity;              // 3 x (N+M), m/s: at frame 0; default: checks/start_velocity.h
   Eigen::VectorXd order;        // (N+M+C): arc length along a rod, m; empty if not a rod
   std::vector<Points> surface;  // T frames of 3 x S, m, unlabelled surface points; may be empty
   std::vector<Points> track;    // T frames of 3 x K, m, key points; empty: `points` are tracked
 
   int train_frames = 0;  // frames before it are for fitting, the rest is the future to predict
 
-  // What the reader had to assume, one line each (mass not declared, points placed ...).
+  // The number of the object of each particle and controller (N+M+C), where the reader found more
+  // than one (checks/objects.h); else empty.
+  Eigen::VectorXi object;
+
+  // What the reader had to assume or finds odd, one line each (mass not declared, points placed,
+  // positions that can hardly be in metres ...).
   std::vector<std::string> warnings;
+  // What it worked out and is no cause for concern (velocities of a start in motion).
+  std::vector<std::string> notes;
 
   int frame_count() const { return static_cast<int>(points.size()); }
   int point_count() const { return points.empty() ? 0 : static_cast<int>(points[0].cols()); }

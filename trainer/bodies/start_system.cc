@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/start_system.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -62,6 +65,40 @@ double ContactRadius(const Recording& recording) {
   return height > 0 && height < spacing ? height : 0;
 }
 
+// The columns of an object's particles, then of its controllers.
+std::vector<int> ColumnsOf(const Recording& recording, int object) {
+  std::vector<int> columns;
+  for (int i = 0; i < recording.object.size(); ++i) {
+    if (recording.object[i] == object) columns.push_back(i);
+  }
+  return columns;
+}
+
+// Springs of the stress-free shape; none from one object to another.
+std::vector<std::array<int, 2>> SpringsOf(const Recording& recording,
+                                          const TopologyOptions& topology) {
+  const int particles = recording.particle_count();
+  if (recording.object.size() == 0) {
+    return BuildSprings(recording.rest, recording.controller_count(), recording.order, topology,
+                        recording.name);
+  }
+  std::vector<std::array<int, 2>> all;
+  for (int object = 0; object <= recording.object.maxCoeff(); ++object) {
+    const std::vector<int> columns = ColumnsOf(recording, object);
+    const auto controllers =
+        std::count_if(columns.begin(), columns.end(), [&](int i) { return i >= particles; });
+    const Eigen::VectorXd order =
+        recording.order.size() > 0 ? Eigen::VectorXd(recording.order(columns)) : Eigen::VectorXd();
+    for (const auto& [a, b] :
+         BuildSprings(recording.rest(Eigen::all, columns), static_cast<int>(controllers), order,
+                      topology, fmt::format("{}, object {}", recording.name, object))) {
+      all.push_back({columns[a], columns[b]});
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
 }  // namespace
 
 SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptions& topology) {
@@ -71,8 +108,7 @@ SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptio
   system.controllers = recording.controller_count();
   system.order = recording.order;
   system.mass = Eigen::VectorXd::Constant(nodes, recording.mass / nodes);
-  system.springs =
-      BuildSprings(recording.rest, system.controllers, recording.order, topology, recording.name);
+  system.springs = SpringsOf(recording, topology);
   system.rest_length = SpringLengths(system.springs, recording.rest, recording.order);
   system.stiffness = system.rest_length.cwiseInverse();
   system.dashpot = Eigen::VectorXd::Ones(system.spring_count());
