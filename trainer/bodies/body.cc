@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "trainer/bodies/hanging_net.h"
 #include "trainer/bodies/start_system.h"
 #include "twin/stability.h"
 
@@ -35,6 +36,11 @@ SpringMassSystem StartSystem(const Recording& recording, const Body& body, doubl
   if (body.mass.size() > 0) system.mass = body.mass;
   system.contact.surface.cone = body.cone;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
+  for (int e = 0; e < body.strain.size(); ++e) {
+    const double ratio = RestRatio(body.stretch * body.strain[e]);
+    system.rest_length[e] *= ratio;
+    system.stiffness[e] /= ratio;
+  }
   system.effects = body.effects;
   return system;
 }

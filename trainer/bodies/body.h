@@ -3,6 +3,7 @@
 // velocity, the cone of friction, its effects; and of which kind it is. A kind says how such a body
 // is fitted:
 //   spring net     common factors, then single springs       (spring_net.cc)
+//   hanging net    the same, with springs that are stretched in frame 0 (hanging_net.cc)
 //   bending chain  common factors, among them the values of its own effects, then by free motions
 //                  (bending_chain.cc)
 // Whatever differs between kinds is asked of the kind.
@@ -47,6 +48,8 @@ struct Body {
   FrictionCone cone = FrictionCone::kElliptic;
   std::vector<EffectValues> effects = {};  // the known ones, then the kind's own
   Eigen::VectorXd mass = {};               // each particle's mass, kg; empty: all alike
+  Eigen::VectorXd strain = {};  // (springs) shares of the strain in frame 0; empty: stress-free
+  double stretch = 0;           // the largest strain in frame 0
 
   std::string Label() const;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "trainer/bodies/bending_chain.h"
+#include "trainer/bodies/hanging_net.h"
 #include "trainer/bodies/particle_mass.h"
 #include "trainer/bodies/spring_net.h"
 #include "trainer/bodies/spring_radius.h"
@@ -35,6 +36,7 @@ std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions
   if (recording.ground) cones.push_back(FrictionCone::kPyramidal);
   if (options.cone) cones = {*options.cone};
   const Eigen::VectorXd masses = ParticleMasses(recording);
+  const bool hangs = HangsAtRest(recording);
   std::vector<Body> candidates;
   double last_radius = 0;
   for (int count : NeighbourCounts(recording, options)) {
@@ -46,6 +48,7 @@ std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions
       for (bool velocity : velocities) {
         candidates.push_back(
             {&SpringNet(), count, radius, velocity, cone, options.effects, masses});
+        if (hangs) candidates.push_back(HangingNet(recording, candidates.back()));
       }
     }
   }

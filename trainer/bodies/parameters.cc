@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "trainer/bodies/contact_logits.h"
+#include "trainer/bodies/hanging_net.h"
 
 namespace physpring {
 namespace {
@@ -51,6 +52,7 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
       effects_at_(classes_ + 2 * class_count_),
       size_(effects_at_ + effects_.size()) {
+  if (options.stretch) stretch_ = size_++;
   const auto add = [this](bool wanted, int* offset) {
     if (!wanted) return;
     *offset = size_;
@@ -85,6 +87,15 @@ bool Parameters::IsControllerSpring(int e) const {
   return std::max(base_.springs[e][0], base_.springs[e][1]) >= base_.node_count();
 }
 
+double Parameters::LengthInBase(int e) const {
+  const auto [a, b] = base_.springs[e];
+  return (base_.position.col(a) - base_.position.col(b)).norm();
+}
+
+double Parameters::StrainInBase(int e) const {
+  return StrainOfRatio(base_.rest_length[e] / LengthInBase(e));
+}
+
 std::vector<int> Parameters::WholeBodyEntries() const {
   std::vector<int> entries;
   for (int i = 0; i < classes_; ++i) {
@@ -94,6 +105,7 @@ std::vector<int> Parameters::WholeBodyEntries() const {
   for (int i = 0; i < effect_count(); ++i) {
     if (!effects_.is_of_several(i)) entries.push_back(effects_at_ + i);
   }
+  if (stretch_ >= 0) entries.push_back(stretch_);
   return entries;
 }
 
@@ -116,6 +128,10 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
     if (options_.dashpots) {
       system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
                                     values[ClassDashpot(e)] + own_dashpot);
+    }
+    if (stretch_ >= 0) {
+      system.rest_length[e] =
+          LengthInBase(e) * RestRatio(StrainInBase(e) * std::exp(values[stretch_]));
     }
     if (rest_length_ >= 0) system.rest_length[e] *= std::exp(values[rest_length_ + e]);
   }
@@ -144,9 +160,12 @@ Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringM
     bar[ClassDashpot(e)] += dashpot_bar;
     if (stiffness_ >= 0) bar[stiffness_ + e] = stiffness_bar;
     if (dashpot_ >= 0) bar[dashpot_ + e] = dashpot_bar;
-    if (rest_length_ >= 0) {
-      bar[rest_length_ + e] = gradient.rest_length[e] * system.rest_length[e];
+    const double rest_length_bar = gradient.rest_length[e] * system.rest_length[e];
+    if (stretch_ >= 0) {
+      const double strain = StrainInBase(e) * std::exp(values[stretch_]);
+      bar[stretch_] += rest_length_bar * strain * RestRatioSlope(strain) / RestRatio(strain);
     }
+    if (rest_length_ >= 0) bar[rest_length_ + e] = rest_length_bar;
   }
   bar[kDrag] = gradient.drag * system.drag;
   if (options_.contact) {

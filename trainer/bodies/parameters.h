@@ -2,7 +2,8 @@
 // What training moves: an unconstrained vector, and the map from it to a spring-mass system.
 //   stiffness_e   = base_e exp(global + class(e) + own_e)     global: apart for controller springs
 //   dashpot_e     = base_e exp(global + class(e) + own_e)
-//   rest_length_e = base_e exp(own_e)
+//   rest_length_e = base_e exp(own_e); in a hanging net (hanging_net.h) the strains of all springs
+//                   in the base's positions have a factor exp(stretch), too
 //   drag          = base exp(.)
 //   coefficients of the contact with the ground: contact_logits.h
 //   values of the base's last effects: effect_entries.h
@@ -29,6 +30,7 @@ struct ParameterOptions {
   double moment_unit = 1;      // of those that are moments (effect_entries.h)
   bool length_classes = true;  // else all springs are of one class
   bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
+  bool stretch = false;        // a factor for the strains of the base in its own positions
 };
 
 class Parameters {
@@ -60,6 +62,8 @@ class Parameters {
 
  private:
   bool IsControllerSpring(int e) const;
+  double LengthInBase(int e) const;
+  double StrainInBase(int e) const;
   int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
   int ClassDashpot(int e) const { return classes_ + class_count_ + length_class_[e]; }
 
@@ -71,6 +75,7 @@ class Parameters {
   int classes_;                                           // offset of the classes' stiffness ...
   int class_count_;                                       // ... and dashpot after it
   int effects_at_;                                        // offset of the effects' values
+  int stretch_ = -1;                                      // offset of the stretch; -1: none
   int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none
   int size_;
   // offsets of the global parts; those of contact only where wanted

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "trainer/bodies/candidates.h"
+#include "trainer/bodies/hanging_net.h"
 #include "trainer/data/held_back.h"
 #include "trainer/motion/observer.h"
 #include "trainer/motion/track_error.h"
@@ -53,10 +54,18 @@ struct RoundState {
   template <class Visitor>
   void Visit(Visitor&& visit) {
     ChosenBody& model = contender.model;
-    visit(model.start_substeps, model.start, model.factors, contender.springs, contender.score,
-          gain, iteration, damping, mean_square);
+    visit(model.body.stretch, model.start_substeps, model.start, model.factors, contender.springs,
+          contender.score, gain, iteration, damping, mean_square);
   }
 };
+
+// The bodies that a search begins from: of one that hangs, stretched by more and more.
+std::vector<Body> StartsOf(const Body& body) {
+  if (body.strain.size() == 0) return {body};
+  std::vector<Body> starts(kStretches.size(), body);
+  for (std::size_t i = 0; i < starts.size(); ++i) starts[i].stretch = kStretches[i];
+  return starts;
+}
 
 // The factors that a search begins from.
 std::vector<Eigen::VectorXd> Starts(const Parameters& factors, const BodyKind& kind) {
@@ -126,17 +135,19 @@ class RoundOfChoice {
 // rough.
 void RoundOfChoice::SearchStart(ChosenBody* model) const {
   double least = kInfinity;
-  for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
-    const Parameters factors = ChosenBody{model->body, substeps, {}, {}}.ParametersOf(first_);
-    MotionProblem::Options follow = FollowOptions(first_, model->body, options_);
-    follow.rollout.observer_gain = kObserverGains[0];
-    MotionProblem problem(factors, held_back_.FitEpisodes(), follow);
-    for (const Eigen::VectorXd& x : Starts(factors, *model->body.kind)) {
-      if (model->start_substeps == 0) *model = {model->body, substeps, x, x};
-      const auto r = problem.Residuals(x);
-      if (!r || r->squaredNorm() >= least) continue;
-      least = r->squaredNorm();
-      *model = {model->body, substeps, x, x};
+  for (const Body& body : StartsOf(model->body)) {
+    for (double substeps = kSoftestStart; substeps <= kStiffestStart; substeps *= 2) {
+      const Parameters factors = ChosenBody{body, substeps, {}, {}}.ParametersOf(first_);
+      MotionProblem::Options follow = FollowOptions(first_, body, options_);
+      follow.rollout.observer_gain = kObserverGains[0];
+      MotionProblem problem(factors, held_back_.FitEpisodes(), follow);
+      for (const Eigen::VectorXd& x : Starts(factors, *body.kind)) {
+        if (model->start_substeps == 0) *model = {body, substeps, x, x};
+        const auto r = problem.Residuals(x);
+        if (!r || r->squaredNorm() >= least) continue;
+        least = r->squaredNorm();
+        *model = {body, substeps, x, x};
+      }
     }
   }
 }
