@@ -10,6 +10,7 @@
 
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/fit_report.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/warnings.h"
@@ -62,15 +63,16 @@ void ExpectWritable(const EvalArguments& arguments, const std::vector<RecordingE
   ExpectOutputs({arguments.json, arguments.picture, folder ? "" : arguments.trajectory}, inputs);
 }
 
-// A twin that predicts worse than something that does not move is of no use.
+// A twin that predicts worse than what needs no twin is of no use.
 void WarnIfUseless(const Evaluation& evaluation) {
-  const std::vector<Row> rows = MeanRows(evaluation);
-  const auto still = rows.back().prediction.track.value;
-  for (const Row& row : rows) {
-    const auto track = row.prediction.track.value;
-    if (row.level < 0 || !track || !still || *track <= *still) continue;
-    fmt::print(stderr, "warning: {} predicts worse than a body that does not move\n", row.name);
+  std::vector<RecordingResult> results;
+  std::vector<int> first, last;
+  for (const EvaluatedRecording& evaluated : evaluation.recordings) {
+    results.push_back(evaluated.result);
+    first.push_back(evaluated.result.first_predicted);
+    last.push_back(evaluated.recording.frame_count());
   }
+  PrintWarnings(NearerBaselines(results, first, last, "this"));
 }
 
 void Run(const EvalArguments& arguments) {

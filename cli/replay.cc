@@ -20,6 +20,8 @@
 #include "rollout/controller_replay.h"
 #include "rollout/plugin_library.h"
 #include "twin/atomic_file.h"
+#include "twin/checks/motion_scale.h"
+#include "twin/checks/plausibility.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
 
@@ -108,6 +110,13 @@ void PrintTable(const ReplayArguments& arguments, const Recording& recording,
   }
 }
 
+void WarnIfUseless(const Recording& recording, const ReplayErrors& errors) {
+  const auto &track = errors.replayed.track.value, &still = errors.motionless.track.value;
+  if (!track || !still) return;
+  const std::string little = TooLittleExplained(*track, *still, MeasurementNoise(recording.points));
+  if (!little.empty()) PrintWarnings({recording.name + ": " + little});
+}
+
 void WriteReport(const ReplayArguments& arguments, const Recording& recording,
                  const ControllerReplay& replay, const ReplayErrors& errors) {
   const nlohmann::ordered_json json = {{"scene", arguments.scene},
@@ -140,6 +149,7 @@ void Run(const ReplayArguments& arguments) {
   PrintWarnings(replay.warnings);
   const ReplayErrors errors = ErrorsOf(replay, recording);
   PrintTable(arguments, recording, replay, errors);
+  WarnIfUseless(recording, errors);
   if (!arguments.json.empty()) WriteReport(arguments, recording, replay, errors);
 }
 

@@ -15,6 +15,7 @@
 
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/fit_report.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
@@ -174,10 +175,10 @@ void Run(const TrainArguments& arguments) {
     throw Interrupted{run.signal};
   }
   Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
-  const std::string fit_error =
-      DescribeFitError(run.twin, data, options.single_precision, options.threads);
+  const FitReport fit = JudgeFit(run.twin, data, options.single_precision, options.threads);
+  Warn(fit.warnings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  PrintReport(arguments.output, run, fit_error, elapsed.count());
+  PrintReport(arguments.output, run, fit.line, elapsed.count());
 }
 
 void AddTwinInputs(CLI::App* command, TrainArguments* arguments) {

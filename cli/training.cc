@@ -12,8 +12,6 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "trainer/fits/train.h"
-#include "trainer/solvers/parallel.h"
-#include "twin/evaluate.h"
 
 namespace physpring {
 namespace {
@@ -26,20 +24,6 @@ class Stopwatch {
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now();
-};
-
-// Mean over the recordings that have data, m.
-struct TrackMean {
-  double sum = 0;
-  int count = 0;
-
-  void Add(const MeanError& error) {
-    sum += error.value.value_or(0);
-    count += error.value.has_value();
-  }
-  std::string InMillimetres() const {
-    return count > 0 ? fmt::format("{:.3f} mm", 1e3 * sum / count) : "no data";
-  }
 };
 
 // To the part of this name; a new one comes last.
@@ -130,25 +114,6 @@ TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, 
     running.WriteUnfinished();
   }
   return run;
-}
-
-std::string DescribeFitError(const Twin& twin, const FitData& data, bool single_precision,
-                             int threads) {
-  const int count = static_cast<int>(data.recordings.size());
-  std::vector<ErrorMeans> fitted(count), motionless(count);
-  ParallelFor(count, threads, [&](int i) {
-    const Recording& recording = data.recordings[i];
-    const RecordingResult result = Evaluate(twin, recording, {single_precision, 0});
-    fitted[i] = MeansOverFrames(result.levels[0].direct, 1, recording.train_frames);
-    motionless[i] = MeansOverFrames(result.motionless, 1, recording.train_frames);
-  });
-  TrackMean fit, still;
-  for (int i = 0; i < count; ++i) {
-    fit.Add(fitted[i].track);
-    still.Add(motionless[i].track);
-  }
-  return fmt::format("track error on the fit frames: {} (a motionless body: {})",
-                     fit.InMillimetres(), still.InMillimetres());
 }
 
 std::vector<std::string> WarnOfUnjoinedControllers(const Twin& twin, const std::string& recording) {

@@ -36,11 +36,6 @@ struct TrainingRun {
 TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
                         double interval);
 
-// How far the twin is from the fit frames of its recordings, next to a body that does not move; one
-// line. Throws Error if it diverges.
-std::string DescribeFitError(const Twin& twin, const FitData& data, bool single_precision,
-                             int threads);
-
 // A line for each controller that no spring of the twin joins, naming the recording.
 std::vector<std::string> WarnOfUnjoinedControllers(const Twin& twin, const std::string& recording);
 

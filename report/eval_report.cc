@@ -23,7 +23,10 @@ struct Columns {
 };
 
 Columns ColumnsOf(const std::vector<Row>& rows) {
-  return {rows[0].fit.has_value(), rows.size() > 2, rows[0].published_l1.has_value()};
+  return {
+      rows[0].fit.has_value(),
+      std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.level >= 0; }) > 1,
+      rows[0].published_l1.has_value()};
 }
 
 // The two or four numbers of one part.
@@ -101,11 +104,11 @@ std::string DescribeFrames(const EvaluatedRecording& evaluated) {
 
 Json Nullable(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-Json ToJson(const RowErrors& errors, bool motionless) {
+Json ToJson(const RowErrors& errors, bool is_baseline) {
   Json json = {{"cd", Nullable(errors.cd.value)},
                {"track", Nullable(errors.track.value)},
                {"cd_euclidean", Nullable(errors.cd_euclidean.value)}};
-  if (!motionless) {
+  if (!is_baseline) {
     json["cd_lifted"] = Nullable(errors.cd_lifted.value);
     json["track_lifted"] = Nullable(errors.track_lifted.value);
     json["cd_euclidean_lifted"] = Nullable(errors.cd_euclidean_lifted.value);
@@ -118,28 +121,28 @@ Json ToJson(const RowErrors& errors, bool motionless) {
 
 Json ToJson(const Row& row) {
   Json json = Json::object();
-  const bool motionless = row.level < 0;
-  if (!motionless) {
+  const bool is_baseline = row.level < 0;
+  if (!is_baseline) {
     json = {{"level", row.level},
             {"nodes", row.nodes},
             {"springs", row.springs},
             {"substeps", row.substeps},
             {"fps", row.frames_per_second}};
   }
-  json["fit"] = row.fit ? ToJson(*row.fit, motionless) : Json(nullptr);
-  json["prediction"] = ToJson(row.prediction, motionless);
+  json["fit"] = row.fit ? ToJson(*row.fit, is_baseline) : Json(nullptr);
+  json["prediction"] = ToJson(row.prediction, is_baseline);
   if (row.published_l1) json["published_l1"] = *row.published_l1;
   return json;
 }
 
-// {"levels": [...], "motionless": {...}} added to `json`.
+// {"levels": [...], "motionless": {...}, ...} added to `json`.
 void AddRows(const std::vector<Row>& rows, Json* json) {
   (*json)["levels"] = Json::array();
   for (const Row& row : rows) {
     if (row.level >= 0) {
       (*json)["levels"].push_back(ToJson(row));
     } else {
-      (*json)["motionless"] = ToJson(row);
+      (*json)[row.name] = ToJson(row);
     }
   }
 }

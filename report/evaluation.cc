@@ -91,17 +91,21 @@ std::vector<Row> RowsOf(const EvaluatedRecording& evaluated) {
     if (evaluated.published_l1) row.published_l1 = level.published_l1;
     SetErrors(evaluated, level.direct, level.lifted, &row);
   }
-  Row& still = rows.emplace_back();
-  still.name = "motionless";
-  if (evaluated.published_l1) still.published_l1 = evaluated.result.motionless_published_l1;
-  SetErrors(evaluated, evaluated.result.motionless, evaluated.result.motionless, &still);
+  for (const BaselineResult& baseline : evaluated.result.baselines) {
+    Row& row = rows.emplace_back();
+    row.name = baseline.name;
+    row.description = baseline.description;
+    if (evaluated.published_l1) row.published_l1 = baseline.published_l1;
+    SetErrors(evaluated, baseline.errors, baseline.errors, &row);
+  }
   return rows;
 }
 
 std::vector<Row> MeanRows(const Evaluation& evaluation) {
-  std::vector<std::vector<Row>> same_row(evaluation.twin.levels.size() + 1);
+  std::vector<std::vector<Row>> same_row;
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {
     const std::vector<Row> rows = RowsOf(evaluated);
+    same_row.resize(rows.size());  // all are of one object: they have the same rows
     for (std::size_t i = 0; i < rows.size(); ++i) same_row[i].push_back(rows[i]);
   }
   std::vector<Row> means;

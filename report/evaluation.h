@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `physpring eval` found, and the rows of its tables: one for each level, the last one for a
-// body that does not move.
+// What `physpring eval` found, and the rows of its tables: one for each level, then one for each
+// prediction that needs no twin (twin/baselines.h).
 #ifndef PHYSPRING_REPORT_EVALUATION_H_
 #define PHYSPRING_REPORT_EVALUATION_H_
 
@@ -37,8 +37,9 @@ struct RowErrors {
 };
 
 struct Row {
-  std::string name;  // "level 0", "motionless"
-  int level = -1;    // -1: motionless, then the numbers up to `frames_per_second` are 0
+  std::string name;         // "level 0", or that of a baseline, "motionless"
+  std::string description;  // of a baseline
+  int level = -1;           // -1: a baseline, then the numbers up to `frames_per_second` are 0
   int nodes = 0;
   int springs = 0;
   int substeps = 0;  // sub-steps a frame; for several recordings the most

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "twin/baselines.h"
 #include "twin/hierarchy.h"
 #include "twin/lift.h"
 
@@ -53,11 +54,11 @@ RecordingResult Evaluate(const Twin& twin, const Recording& recording,
   for (int level = 0; level < static_cast<int>(twin.levels.size()); ++level) {
     result.levels.push_back(EvaluateLevel(twin, level, recording, options));
   }
-  const Points start = recording.start.leftCols(recording.particle_count());
-  std::vector<Points> still;
-  for (int t = 0; t < recording.frame_count(); ++t) still.push_back(start);
-  result.motionless = ComputeParticleErrors(recording, still);
-  result.motionless_published_l1 = PublishedL1(recording, still);
+  for (const Baseline& baseline : PredictBaselines(recording, twin.linear)) {
+    result.baselines.push_back({baseline.name, baseline.description,
+                                ComputeParticleErrors(recording, baseline.particles),
+                                PublishedL1(recording, baseline.particles)});
+  }
   return result;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A twin judged on one recording: every level predicts it, and each frame is compared with what was
-// measured. Next to it a body that does not move.
+// measured. Next to it predictions that need no twin (baselines.h).
 //
 // "Direct" errors compare the nodes of a level themselves, as published: CD from the nodes that
 // stand for a measured point, track from the node nearest in frame 0 (at level 0: by index).
@@ -9,6 +9,7 @@
 #define PHYSPRING_TWIN_EVALUATE_H_
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "twin/metrics.h"
@@ -30,14 +31,19 @@ struct LevelResult {
   std::vector<Points> points;          // T frames of 3 x N, m: the measured points as predicted
 };
 
+struct BaselineResult {
+  std::string name, description;  // Baseline
+  FrameErrors errors;
+  std::optional<double> published_l1;  // m
+};
+
 struct RecordingResult {
   bool trained_on = false;  // by hash
   // Frames [1, first_predicted) were fitted, [first_predicted, T) are predicted. 1 if not trained
   // on.
   int first_predicted = 1;
   std::vector<LevelResult> levels;
-  FrameErrors motionless;  // all points stay where they start
-  std::optional<double> motionless_published_l1;
+  std::vector<BaselineResult> baselines;  // the first one is motionless
 };
 
 // Throws Error as Predict does.

@@ -60,6 +60,14 @@ Eigen::VectorXd NpzFields::Vector(const std::string& name, const std::string& si
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+Eigen::MatrixXd NpzFields::Matrix(const std::string& name, const std::string& rows,
+                                  const std::string& columns) {
+  using RowsFirst = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<double> values = FiniteNumbers(name, {rows, columns});
+  return Eigen::Map<const RowsFirst>(values.data(), static_cast<Eigen::Index>(Extent(rows)),
+                                     static_cast<Eigen::Index>(Extent(columns)));
+}
+
 Points NpzFields::Positions(const std::string& name, const std::string& size) {
   const std::vector<double> values = FiniteNumbers(name, {size, "3"});
   ExpectWithinReach(name, values);

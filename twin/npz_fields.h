@@ -33,6 +33,9 @@ class NpzFields {
   // Finite numbers: a scalar, one dimension, and (size, 3) as 3 x size.
   double Scalar(const std::string& name);
   Eigen::VectorXd Vector(const std::string& name, const std::string& size);
+  // (rows, columns).
+  Eigen::MatrixXd Matrix(const std::string& name, const std::string& rows,
+                         const std::string& columns);
   // Coordinates, here and below, are within 1 km of 0: what is farther off marks a lost point, or
   // overflows in squares.
   Points Positions(const std::string& name, const std::string& size);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/linear_predictor.h"
 #include "twin/npz.h"
 #include "twin/spring_mass_system.h"
 
@@ -47,6 +48,8 @@ struct Twin {
   double fps = 0;
   Eigen::Vector3d gravity{0, 0, -9.81};
   TrainedGround ground;
+
+  LinearPredictor linear;  // of the recordings that it was trained on; may be empty
 
   std::vector<TrainedOn> trained_on;
   std::string options_json = "{}";  // the options it was trained with, a compact JSON object

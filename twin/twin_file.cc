@@ -35,6 +35,18 @@ NpzArray StoreVector(const Eigen::VectorXd& values) {
   return NpzArray::Doubles({ExtentOf(values.size())}, values.data());
 }
 
+NpzArray StoreMatrix(const Eigen::MatrixXd& values) {
+  const Eigen::MatrixXd transposed = values.transpose();  // rows first
+  return NpzArray::Doubles({ExtentOf(values.rows()), ExtentOf(values.cols())}, transposed.data());
+}
+
+void StoreLinear(const LinearPredictor& linear, Npz& arrays) {
+  arrays["linear/feature_mean"] = StoreVector(linear.feature_mean);
+  arrays["linear/components"] = StoreMatrix(linear.components);
+  arrays["linear/weights"] = StoreMatrix(linear.weights);
+  arrays["linear/mean"] = StoreVector(linear.mean);
+}
+
 void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) {
   const SpringMassSystem& system = level.system;
   arrays[prefix + "position"] =
@@ -118,6 +130,7 @@ Npz StoreTwin(const Twin& twin, const std::string& path) {
         plane ? NpzArray::Doubles({4}, plane->data()) : NpzArray::Doubles({0}, nullptr);
   }
   if (twin.order.size() > 0) arrays["order"] = StoreVector(twin.order);
+  if (!twin.linear.empty()) StoreLinear(twin.linear, arrays);
   for (std::size_t n = 0; n < twin.levels.size(); ++n) {
     StoreLevel(twin.levels[n], LevelPrefix(n), arrays);
   }
@@ -255,6 +268,17 @@ TrainedGround ReadTrainedGround(NpzFields* fields) {
   return {.known = true, .plane = Eigen::Vector4d(plane)};
 }
 
+LinearPredictor ReadLinear(NpzFields* fields, int points, int controllers) {
+  fields->SetExtent("features", static_cast<std::size_t>(LinearFeatures(controllers)));
+  fields->SetExtent("3 points", 3 * static_cast<std::size_t>(points));
+  LinearPredictor linear;
+  linear.feature_mean = fields->Vector("linear/feature_mean", "features");
+  linear.components = fields->Matrix("linear/components", "features", "components");
+  linear.weights = fields->Matrix("linear/weights", "3 points", "components");
+  linear.mean = fields->Vector("linear/mean", "3 points");
+  return linear;
+}
+
 Twin ParseTwin(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
   if (!arrays.contains("meta") && arrays.contains("points"))
@@ -281,6 +305,7 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   fields.SetExtent("nodes+controllers", ExtentOf(twin.levels[0].system.position.cols()));
   if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
   SpreadOrder(&twin);
+  if (fields.Has("linear/mean")) twin.linear = ReadLinear(&fields, twin.points, controllers);
 
   for (const auto& [name, array] : arrays) {
     if (name.starts_with(kStatePrefix)) twin.training_state[name] = array;

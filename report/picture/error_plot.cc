@@ -23,7 +23,10 @@ struct Curve {
 };
 
 std::vector<Curve> CurvesOf(const RecordingResult& result) {
-  std::vector<Curve> curves{{"motionless", "still", &result.motionless.track}};
+  std::vector<Curve> curves;
+  for (const BaselineResult& baseline : result.baselines) {
+    curves.push_back({baseline.name, "still", &baseline.errors.track});
+  }
   for (const LevelResult& level : std::views::reverse(result.levels)) {
     curves.push_back({fmt::format("level {}", level.level),
                       fmt::format("level{}", std::min(level.level, 3)), &level.lifted.track});

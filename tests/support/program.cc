@@ -3,8 +3,8 @@
 
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <cstdlib>
+#include <sstream>
 
 #include "tests/support/temporary_folder.h"
 #include "twin/atomic_file.h"
@@ -28,9 +28,15 @@ ProgramResult RunProgram(const std::vector<std::string>& arguments) {
 }
 
 bool FailsWith(const ProgramResult& result, const std::string& part) {
-  const auto lines = std::count(result.errors.begin(), result.errors.end(), '\n');
-  return result.status == 1 && result.output.empty() && lines == 1 &&
-         result.errors.starts_with("physpring: ") && result.errors.find(part) != std::string::npos;
+  std::istringstream lines(result.errors);
+  std::string line, last;
+  while (std::getline(lines, line)) {
+    const bool remark = last.empty() || last.starts_with("warning: ") || last.starts_with("note: ");
+    if (!remark) return false;
+    last = line;
+  }
+  return result.status == 1 && result.output.empty() && last.starts_with("physpring: ") &&
+         last.find(part) != std::string::npos;
 }
 
 }  // namespace physpring

@@ -18,7 +18,7 @@ struct ProgramResult {
 ProgramResult RunProgram(const std::vector<std::string>& arguments);
 
 // Whether `result` is what a failure has to be: status 1, nothing on standard output, and one line
-// "physpring: ..." on standard error that holds `part`.
+// "physpring: ..." on standard error that holds `part`. Warnings and notes may stand before it.
 bool FailsWith(const ProgramResult& result, const std::string& part);
 
 }  // namespace physpring

@@ -35,7 +35,7 @@ inline Recording MakeRecording() {
     Points points(3, 3);
     points << 0, 1, 2, 0, 0, 0.25, 1, 1, 1;
     recording.points.emplace_back(points.array() + 0.125 * t);
-    recording.controllers.emplace_back(Points::Constant(3, 1, 3 + t));
+    recording.controllers.emplace_back(Points::Constant(3, 1, 1.25 + 0.125 * t));
     recording.surface.emplace_back(Points::Constant(3, 2, t));
     recording.track.emplace_back(Points::Constant(3, 1, -t));
   }

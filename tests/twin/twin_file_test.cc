@@ -57,6 +57,23 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
   }
 }
 
+TEST_F(TwinFile, KeepsTheLinearPredictor) {
+  EXPECT_TRUE(ReadTwin(path_).linear.empty()) << "files of older programs have none";
+  Twin twin = MakeTwin();
+  const int features = LinearFeatures(twin.levels[0].system.controllers);
+  twin.linear = {Eigen::VectorXd::Random(features), Eigen::MatrixXd::Random(features, 4),
+                 Eigen::MatrixXd::Random(3 * twin.points, 4),
+                 Eigen::VectorXd::Random(3 * twin.points)};
+  WriteTwin(twin, path_);
+  const LinearPredictor read = ReadTwin(path_).linear;
+  EXPECT_EQ(read.feature_mean, twin.linear.feature_mean);
+  EXPECT_EQ(read.components, twin.linear.components);
+  EXPECT_EQ(read.weights, twin.linear.weights);
+  EXPECT_EQ(read.mean, twin.linear.mean);
+  twin.linear.weights.resize(3, 4);
+  EXPECT_THROW(WriteTwin(twin, path_), Error);
+}
+
 TEST_F(TwinFile, KeepsTheGround) {
   Twin twin = MakeTwin();
   EXPECT_FALSE(ReadTwin(path_).ground.known);

@@ -27,6 +27,7 @@ Twin Train(const FitData& data, const TrainOptions& options, const std::optional
   Twin twin = dense       ? Level0Of(*dense, work)
               : two_stage ? FitTwoStage(data, options, of_level0)
                           : FitDense(data, options, of_level0);
+  if (!dense) twin.linear = FitLinearPredictor(data.recordings);
   if (options.levels == 1) return twin;
   work.Reached(twin);
   return FitHierarchy(twin, data, options, work.Part("coarse levels", kDensePart, 1));

@@ -140,7 +140,9 @@ TEST(Parameters, SpringsWithoutClassesHaveOne) {
 
 INSTANTIATE_TEST_SUITE_P(Options, ParametersAdjoint,
                          testing::Values(kAll, kCommon, ParameterOptions{true, false, false, false},
-                                         ParameterOptions{false, true, false, true}));
+                                         ParameterOptions{false, true, false, true},
+                                         ParameterOptions{true, false, true, false, 0, 1, true,
+                                                          true, true}));
 
 TEST(Parameters, ZeroIsTheBaseSystem) {
   const SpringMassSystem base = RandomSystem(10, 2, 3);

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
+#include "tests/support/plain_rope.h"
 #include "tests/support/random_system.h"
 #include "tests/support/swung_rope.h"
+#include "twin/checks/objects.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -107,6 +110,23 @@ TEST(ScaleToSubsteps, ScalesAllSpringsAlike) {
   EXPECT_NEAR(stiffness.minCoeff() / stiffness.maxCoeff(), 1, 1e-12);
   EXPECT_NEAR(dashpot.minCoeff() / dashpot.maxCoeff(), 1, 1e-12);
   EXPECT_EQ(system.rest_length, start.rest_length);
+}
+
+TEST(StartSystem, JoinsNoTwoObjects) {
+  Recording recording = TwoRopes();
+  const TopologyOptions four{.max_neighbours = 4, .controller_max_neighbours = 4};
+  const auto across = [&](const SpringMassSystem& system) {
+    return std::count_if(system.springs.begin(), system.springs.end(), [](const auto& spring) {
+      const auto of_second = [](int i) { return i == 23 || (i >= 11 && i < 22); };
+      return of_second(spring[0]) != of_second(spring[1]);
+    });
+  };
+  EXPECT_GT(across(MakeStartSystem(recording, four)), 20);
+  recording.object = FindObjects(recording);
+  const SpringMassSystem system = MakeStartSystem(recording, four);
+  EXPECT_EQ(across(system), 0);
+  EXPECT_GT(system.spring_count(), 40);
+  EXPECT_TRUE(system.UnjoinedControllers().empty());
 }
 
 }  // namespace

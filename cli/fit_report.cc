@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/fit_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "trainer/solvers/parallel.h"
+#include "twin/checks/motion_scale.h"
+#include "twin/checks/plausibility.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kNearer = 0.95;  // a tie is no warning
+
+// The mean over recordings of their mean track errors in frames [first, last), m; none without
+// data.
+template <class ErrorsOfRecording>
+std::optional<double> MeanTrack(const std::vector<RecordingResult>& results,
+                                const std::vector<int>& first, const std::vector<int>& last,
+                                ErrorsOfRecording&& errors) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const MeanError mean = MeanOverFrames(errors(results[i]).track, first[i], last[i]);
+    sum += mean.value.value_or(0);
+    count += mean.value.has_value();
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+std::string InMillimetres(const std::optional<double>& error) {
+  return error ? fmt::format("{:.3f} mm", 1e3 * *error) : "no data";
+}
+
+}  // namespace
+
+std::vector<std::string> NearerBaselines(const std::vector<RecordingResult>& results,
+                                         const std::vector<int>& first,
+                                         const std::vector<int>& last, const std::string& frames) {
+  std::vector<std::string> lines;
+  for (std::size_t b = 0; b < results.at(0).baselines.size(); ++b) {
+    const auto baseline = MeanTrack(
+        results, first, last, [b](const RecordingResult& one) { return one.baselines[b].errors; });
+    for (std::size_t l = 0; l < results[0].levels.size(); ++l) {
+      const auto level = MeanTrack(
+          results, first, last, [l](const RecordingResult& one) { return one.levels[l].lifted; });
+      if (!baseline || !level || *baseline >= kNearer * *level) continue;
+      lines.push_back(fmt::format("{} predicts {} better than level {}: {:.2f} against {:.2f} mm",
+                                  results[0].baselines[b].description, frames, l, 1e3 * *baseline,
+                                  1e3 * *level));
+    }
+  }
+  return lines;
+}
+
+FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision, int threads) {
+  const int count = static_cast<int>(data.recordings.size());
+  std::vector<RecordingResult> results(count);
+  std::vector<int> first(count, 1), split(count), end(count);
+  Twin dense = twin;
+  dense.levels.resize(1);
+  ParallelFor(count, threads, [&](int i) {
+    results[i] = Evaluate(dense, data.recordings[i], {single_precision, 0});
+    split[i] = data.recordings[i].train_frames;
+    end[i] = data.recordings[i].frame_count();
+  });
+  const auto of_level = [](const RecordingResult& one) { return one.levels[0].lifted; };
+  const auto of_still = [](const RecordingResult& one) { return one.baselines[0].errors; };
+  const auto fit = MeanTrack(results, first, split, of_level);
+  const auto still = MeanTrack(results, first, split, of_still);
+  const auto later = MeanTrack(results, split, end, of_level);
+
+  FitReport report;
+  report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
+                            InMillimetres(fit), InMillimetres(still));
+  if (later) report.line += fmt::format("; on the later ones: {}", InMillimetres(later));
+  if (fit && still) {
+    const std::string little =
+        TooLittleExplained(*fit, *still, MeasurementNoise(data.recordings[0].points));
+    if (!little.empty()) report.warnings.push_back(little);
+  }
+  if (later && report.warnings.empty()) {
+    report.warnings = NearerBaselines(results, split, end, "the frames after those for fitting");
+  }
+  return report;
+}
+
+}  // namespace physpring

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// How good a twin is on the recordings that it was trained on.
+#ifndef PHYSPRING_CLI_FIT_REPORT_H_
+#define PHYSPRING_CLI_FIT_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "trainer/data/fit_data.h"
+#include "twin/evaluate.h"
+#include "twin/twin.h"
+
+namespace physpring {
+
+struct FitReport {
+  std::string line;                   // the errors on the fit frames, and on those after them
+  std::vector<std::string> warnings;  // a useless twin, and a baseline that is nearer
+};
+
+// Throws Error if the twin diverges.
+FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision, int threads);
+
+// A line for each level, and each baseline (twin/baselines.h) that is nearer than it to what was
+// measured in frames [first, last) of the recordings, by more than a twentieth. `frames` says which
+// these are.
+std::vector<std::string> NearerBaselines(const std::vector<RecordingResult>& results,
+                                         const std::vector<int>& first,
+                                         const std::vector<int>& last, const std::string& frames);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_FIT_REPORT_H_

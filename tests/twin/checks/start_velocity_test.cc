@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/checks/start_velocity.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "tests/support/plain_rope.h"
+
+namespace physpring {
+namespace {
+
+TEST(StartVelocity, OfARopeThatSwingsIsTrue) {
+  PlainRope rope;
+  rope.before = 1;
+  const std::optional<StartVelocity> found = EstimateStartVelocity(rope.Record());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_TRUE(found->measured);
+  rope.noise = 0;
+  rope.fps = 6000;  // so fast that a difference is the velocity
+  rope.frames = 3;
+  const Recording exact = rope.Record();
+  const Points truth = (exact.points[2] - exact.points[0]) * rope.fps / 2;
+  const double speed = truth.colwise().norm().mean();
+  EXPECT_GT(speed, 0.2);
+  EXPECT_LT((found->velocity - truth).colwise().norm().mean(), 0.1 * speed);
+}
+
+TEST(StartVelocity, OfAThrownBlockIsTrue) {
+  Recording block;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 5e-4);
+  const Eigen::Vector3d v(1.5, 0.4, 3), turn(2, 3, 1);
+  Points shape(3, 27);
+  for (int i = 0; i < 27; ++i) shape.col(i) << 0.04 * (i % 3), 0.04 * (i / 3 % 3), 0.04 * (i / 9);
+  shape.colwise() -= shape.rowwise().mean().eval();
+  for (int t = 0; t < 45; ++t) {
+    const double s = t / 60.0;
+    const Eigen::Vector3d centre = v * s + Eigen::Vector3d(0, 0, 1 - 0.5 * 9.81 * s * s);
+    const Eigen::Matrix3d r = Eigen::AngleAxisd(turn.norm() * s, turn.normalized()).matrix();
+    block.points.emplace_back(
+        ((r * shape).colwise() + centre).unaryExpr([&](double x) { return x + noise(random); }));
+    block.controllers.emplace_back(3, 0);
+  }
+  block.fps = 60;
+  block.train_frames = 31;
+  block.start = block.points[0];
+  block.interior.resize(3, 0);
+  const std::optional<StartVelocity> found = EstimateStartVelocity(block);
+  ASSERT_TRUE(found.has_value());
+  for (int i = 0; i < 27; ++i) {
+    const Eigen::Vector3d truth = v + turn.cross(shape.col(i));
+    EXPECT_LT((found->velocity.col(i) - truth).norm(), 0.06) << i;
+  }
+}
+
+TEST(StartVelocity, OfAStartFromRestIsNone) {
+  PlainRope rope;
+  EXPECT_FALSE(EstimateStartVelocity(rope.Record()).has_value()) << "slack, the hand moves at once";
+  rope.before = 8;
+  rope.hand = [](double t) {
+    return Eigen::Vector3d(t < 0 ? 0 : 0.1 * (1 - std::cos(5 * t)), 0, 0);
+  };
+  EXPECT_FALSE(EstimateStartVelocity(rope.Record()).has_value()) << "hangs at rest";
+  rope.hand = [](double) { return Eigen::Vector3d(0, 0, 0); };
+  EXPECT_FALSE(EstimateStartVelocity(rope.Record()).has_value()) << "never moves";
+}
+
+// Most of the body is far from the only point that is seen.
+TEST(StartVelocity, OfABodyThatIsHardlyMeasuredIsNotKnown) {
+  PlainRope rope;
+  rope.before = 1;
+  Recording recording = rope.Record();
+  recording.interior = recording.start.leftCols(11);
+  for (Points& frame : recording.points) frame = frame.rightCols(2).eval();
+  Points start(3, 2 + 11 + 1);
+  start << recording.points[0], recording.interior, recording.controllers[0];
+  recording.start = start;
+  const std::optional<StartVelocity> found = EstimateStartVelocity(recording);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_FALSE(found->measured);
+}
+
+}  // namespace
+}  // namespace physpring
