@@ -163,7 +163,10 @@ void Run(const TrainArguments& arguments) {
   checkpoint.ExpectReplaceable(arguments.run.resume || arguments.run.force);
   ExpectWritable(arguments, entries);
   OpenLog(arguments.log, arguments.run.resume);
-  Warn(WarningsOf(data.recordings));
+  PrintRemarks(data.recordings);
+  for (const std::string& warning : JoinAlike(WarningsOf(data.recordings))) {
+    spdlog::info("warning: {}", warning);
+  }
 
   const TrainingRun run = RunTraining({data, options, dense}, checkpoint, arguments.run.resume,
                                       arguments.run.checkpoint_interval);

@@ -36,7 +36,8 @@ struct PlainRope {
 inline Recording PlainRope::Record() const {
   const Eigen::Vector3d gravity(0, 0, -9.81);
   Points x(3, masses), v = Points::Zero(3, masses);
-  for (int i = 0; i < masses; ++i) x.col(i) = hangs_from - Eigen::Vector3d(0, 0, i * spacing);
+  for (int i = 0; i < masses; ++i)
+    x.col(i) = hangs_from + hand(-before) - Eigen::Vector3d(0, 0, i * spacing);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, noise);
   const int steps = 60;

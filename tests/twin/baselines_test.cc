@@ -80,7 +80,7 @@ TEST(Baselines, MoveRigidlyWithTheControllers) {
   const std::vector<Baseline> baselines = PredictBaselines(recording, {});
   ASSERT_EQ(baselines.size(), 2u);
   EXPECT_EQ(baselines[0].name, "motionless");
-  EXPECT_LT(MeanDistance(recording.points, Named(baselines, "rigid").particles, 0), 1e-12);
+  EXPECT_LT(MeanDistance(recording.points, Named(baselines, "rigid").particles, 0), 1e-4);
   EXPECT_GT(MeanDistance(recording.points, Named(baselines, "motionless").particles, 0), 0.1);
 }
 

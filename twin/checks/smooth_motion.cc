@@ -7,9 +7,14 @@
 namespace physpring {
 namespace {
 
-constexpr double kSmoothingTime = 0.1;  // s
-constexpr double kMostNumbers = 2e5;    // accelerations that are looked at
-constexpr double kSeenPart = 0.75;      // of the points
+constexpr double kShort = 0.03, kLong = 0.1;  // s
+constexpr double kMostNumbers = 2e5;          // accelerations that are looked at
+constexpr double kSeenPart = 0.75;            // of the points
+
+// Frames in a time, at least 1.
+int FramesIn(double time, const Recording& recording) {
+  return std::max(1, static_cast<int>(std::lround(time * recording.fps)));
+}
 
 // The second difference of column i about frame t.
 Eigen::Vector3d Acceleration(const Recording& recording, int t, int step, Eigen::Index i) {
@@ -20,12 +25,8 @@ Eigen::Vector3d Acceleration(const Recording& recording, int t, int step, Eigen:
 
 }  // namespace
 
-int SmoothingFrames(const Recording& recording) {
-  return std::max(1, static_cast<int>(std::lround(kSmoothingTime * recording.fps)));
-}
-
 std::vector<double> AccelerationSizes(const Recording& recording) {
-  const int step = SmoothingFrames(recording);
+  const int step = FramesIn(kShort, recording);
   const double numbers = static_cast<double>(recording.frame_count()) * recording.point_count();
   const int every = 1 + static_cast<int>(numbers / kMostNumbers);
   std::vector<double> sizes;
@@ -50,7 +51,7 @@ double MotionOfControllers(const Recording& recording) {
 }
 
 std::vector<Pull> Pulls(const Recording& recording) {
-  const int step = SmoothingFrames(recording);
+  const int step = FramesIn(kLong, recording);
   std::vector<Pull> pulls;
   if (recording.controller_count() == 0) return pulls;
   for (int t = step; t + step < recording.frame_count(); ++t) {

@@ -62,7 +62,7 @@ TEST(Outliers, AreLeftOutWithALine) {
   recording.points[60].col(8) += Eigen::Vector3d(0, 0, 0.2);
   EXPECT_THAT(LeaveOutOutliers("a.npz", &recording),
               HasSubstr("a.npz: 1 measurements that leave their neighbours are taken as not seen: "
-                        "point 8 jumps by 0.2 m in frame 60"));
+                        "point 8 jumps by 0.197 m in frame 60"));
   EXPECT_TRUE(recording.points[60].col(8).array().isNaN().all());
   EXPECT_EQ(LeaveOutOutliers("a.npz", &recording), "");
 }

@@ -58,7 +58,7 @@ TEST(Oddities, TellAWristFromAGrasp) {
   for (Points& frame : wrist.controllers) frame.row(2).array() += 0.1;
   wrist.start.col(11)[2] += 0.1;
   EXPECT_THAT(FindOddities(wrist),
-              ElementsAre(HasSubstr("controller 0 starts 0.15 m from the nearest particle")));
+              ElementsAre(HasSubstr("controller 0 starts 0.149 m from the nearest particle")));
 }
 
 TEST(Oddities, TellARelease) {
