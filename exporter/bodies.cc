@@ -146,8 +146,7 @@ void AddDefaults(const LevelPlan& plan, XmlElement* mujoco) {
              {{"width", Number(kTendonWidth)},
               {"group", "4"},
               {"limited", "false"},
-              {"frictionloss", "0"},
-              {"armature", "0"}});
+              {"frictionloss", "0"}});
 
   XmlElement* node = AddElement(top, "default", {{"class", plan.NodeClass()}});
   XmlElement* joint = AddSlideDefaults(node);

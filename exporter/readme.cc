@@ -104,6 +104,18 @@ std::string ConeAttribute(const LevelPlan& plan) {
   return plan.WantsEllipticCone() ? fmt::format(" cone=\"{}\"", kElliptic) : "";
 }
 
+// Models of tendons and flexes use what MuJoCo has had since 3.6; attributes of tendons that stand
+// for effects are newer.
+std::string DescribeVersion(const std::vector<ExportedLevel>& levels) {
+  bool plugin = false, effects = false;
+  for (const ExportedLevel& level : levels) {
+    plugin = plugin || level.plan.NeedsPlugin();
+    for (const EffectMjcf& effect : level.plan.effects) effects = effects || !effect.tendon.empty();
+  }
+  if (plugin) return "Requires MuJoCo 4.0 and PhySPRING's plugin library. MJX ignores plugins.";
+  return effects ? "Requires MuJoCo 4.0 or later." : "Requires MuJoCo 3.6 or later.";
+}
+
 // The plugin's sub-steps are its own.
 std::string TimestepLimit(const LevelPlan& plan) {
   return plan.springs == SpringKind::kPlugin ? "" : " and a time step below the largest stable one";
@@ -121,7 +133,7 @@ A deformable object as spring-mass systems, learned from {1} and exported by Phy
 {3}
 ```
 
-Requires MuJoCo 4.0.0 or later.
+{14}
 
 {4}
 ```python
@@ -151,7 +163,7 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
                      DescribeContact(plan), DescribeControllers(plan), levels[0].model,
                      DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan),
-                     TimestepLimit(plan), DescribeFloor(plan));
+                     TimestepLimit(plan), DescribeFloor(plan), DescribeVersion(levels));
 }
 
 }  // namespace physpring
