@@ -6,7 +6,8 @@
 #   a release tarball   mujoco-4.0.0/ with include/mujoco/ and lib/
 #   an install prefix   /opt/mujoco or /usr/local, also of an installed CMake package
 # and is then the only place searched. Without it: CMAKE_PREFIX_PATH, the wheel that scripts/setup
-# put into .deps/mujoco, the system. A version other than the one asked for is refused. Sets MuJoCo_VERSION, MuJoCo_INCLUDE_DIR and MuJoCo_LIBRARY.
+# put into .deps/mujoco, the system. A version outside the range asked for is refused. Sets
+# MuJoCo_VERSION, MuJoCo_INCLUDE_DIR and MuJoCo_LIBRARY.
 
 if(DEFINED MuJoCo_ROOT)
   set(_root "${MuJoCo_ROOT}")
@@ -28,8 +29,6 @@ endif()
 # searched again at every run, so that a new MuJoCo_ROOT takes effect
 find_path(MuJoCo_INCLUDE_DIR NAMES mujoco/mujoco.h ${_where}
           PATH_SUFFIXES include mujoco/include NO_CACHE)
-find_library(MuJoCo_LIBRARY NAMES mujoco libmujoco.so.${MuJoCo_FIND_VERSION} ${_where}
-             PATH_SUFFIXES lib lib64 lib/${CMAKE_LIBRARY_ARCHITECTURE} mujoco NO_CACHE)
 
 # mjVERSION_HEADER is MMMmmmppp: 4000000 is 4.0.0 (before 3.5 it had one digit each: 334 is 3.3.4)
 if(MuJoCo_INCLUDE_DIR)
@@ -46,12 +45,16 @@ if(MuJoCo_INCLUDE_DIR)
   endif()
 endif()
 
+# a wheel has the library under its full name only
+find_library(MuJoCo_LIBRARY NAMES mujoco libmujoco.so.${MuJoCo_VERSION} ${_where}
+             PATH_SUFFIXES lib lib64 lib/${CMAKE_LIBRARY_ARCHITECTURE} mujoco NO_CACHE)
+
 # the library carries its version in its file name
 set(_problem "")
 if(NOT MuJoCo_INCLUDE_DIR)
   set(_problem "no mujoco/mujoco.h")
 elseif(NOT MuJoCo_LIBRARY)
-  set(_problem "headers in ${MuJoCo_INCLUDE_DIR}, but no libmujoco.so")
+  set(_problem "headers of ${MuJoCo_VERSION} in ${MuJoCo_INCLUDE_DIR}, but no libmujoco.so of that version")
 else()
   file(REAL_PATH "${MuJoCo_LIBRARY}" _file)
   if(_file MATCHES "\\.so\\.([0-9]+\\.[0-9]+\\.[0-9]+)$" AND MuJoCo_VERSION
@@ -68,8 +71,9 @@ include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(MuJoCo
   REQUIRED_VARS MuJoCo_LIBRARY MuJoCo_INCLUDE_DIR
   VERSION_VAR MuJoCo_VERSION
+  HANDLE_VERSION_RANGE
   REASON_FAILURE_MESSAGE "${_problem}
-  MuJoCo ${MuJoCo_FIND_VERSION} is needed: run scripts/setup, or give -DMuJoCo_ROOT=DIR (wheel folder, release tarball or install prefix).")
+  MuJoCo ${MuJoCo_FIND_VERSION_MAJOR}.${MuJoCo_FIND_VERSION_MINOR} is needed: run scripts/setup, or give -DMuJoCo_ROOT=DIR (wheel folder, release tarball or install prefix).")
 
 if(MuJoCo_FOUND AND NOT TARGET MuJoCo::MuJoCo)
   add_library(MuJoCo::MuJoCo SHARED IMPORTED)

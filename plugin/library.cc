@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "plugin/contact.h"
+#include "plugin/host.h"
 #include "plugin/springs.h"
 
 namespace physpring {
@@ -82,13 +83,7 @@ void Register() {
 }
 
 mjPLUGIN_LIB_INIT(physpring) {
-  if (mj_version() != mjVERSION_HEADER) {
-    mju_warning(
-        "physpring: this plugin library is for MuJoCo %d, not %d: its plugins are not "
-        "registered",
-        mjVERSION_HEADER, mj_version());
-    return;
-  }
+  if (!FindHost()) return;
   Register<Springs>();
   Register<LevelContact>();
 }

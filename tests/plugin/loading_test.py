@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""loading_test.py LIBRARY PACKAGE: the three ways in which Python loads the plugin library.
+"""loading_test.py LIBRARY PACKAGE: the three ways in which Python loads the plugin library, in
+the MuJoCo that it was built with and in a later patch of it.
 
-Makes a virtual environment with the mujoco-core wheel; exits with 77 (skipped) where that cannot
-be had.
+Makes virtual environments with mujoco-core wheels; exits with 77 (skipped) where they cannot be
+had.
 """
 
 import os
@@ -10,6 +11,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+VERSIONS = ['4.0.0', '4.0.1']
 
 MODEL = """<mujoco>
   <extension><plugin plugin="physpring.springs"><instance name="pair">
@@ -45,28 +48,42 @@ def expect_step(python, load=''):
     run(python, '-c', PROGRAM.format(load, model))
 
 
+def printed(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def load_in_all_ways(version, library, package, folder):
+    """False where this MuJoCo cannot be had."""
+    python = os.path.join(folder, 'venv', 'bin', 'python')
+    pip = [python, '-m', 'pip', 'install', '-q']
+    try:
+        run(sys.executable, '-m', 'venv', os.path.join(folder, 'venv'))
+        run(*pip, f'mujoco-core=={version}', 'setuptools', 'wheel')
+    except subprocess.CalledProcessError:
+        return False
+
+    expect_step(python, f'mujoco.mj_loadPluginLibrary({library!r})')
+
+    where = printed(python, '-c', 'import mujoco; print(mujoco.PLUGINS_DIR)')
+    dropped = shutil.copy(library, where)
+    expect_step(python)
+    os.remove(dropped)
+
+    copy = shutil.copytree(package, os.path.join(folder, 'package'))
+    shutil.copy(library, os.path.join(copy, 'physpring_mujoco'))
+    run(*pip, '--no-build-isolation', copy)
+    expect_step(python)
+    kept = printed(python, '-c', 'import mujoco; print(mujoco.__version__)')
+    assert kept == version, f'the package put {kept} in the place of {version}'
+    return True
+
+
 def main(library, package):
-    with tempfile.TemporaryDirectory() as folder:
-        python = os.path.join(folder, 'venv', 'bin', 'python')
-        try:
-            run(sys.executable, '-m', 'venv', os.path.join(folder, 'venv'))
-            run(python, '-m', 'pip', 'install', '-q', 'mujoco-core==4.0.0', 'setuptools', 'wheel')
-        except subprocess.CalledProcessError:
-            print('skipped: python3-venv or the mujoco-core wheel is out of reach')
-            return 77
-
-        expect_step(python, f'mujoco.mj_loadPluginLibrary({library!r})')
-
-        where = subprocess.run([python, '-c', 'import mujoco; print(mujoco.PLUGINS_DIR)'],
-                               check=True, capture_output=True, text=True).stdout.strip()
-        dropped = shutil.copy(library, where)
-        expect_step(python)
-        os.remove(dropped)
-
-        copy = shutil.copytree(package, os.path.join(folder, 'package'))
-        shutil.copy(library, os.path.join(copy, 'physpring_mujoco'))
-        run(python, '-m', 'pip', 'install', '-q', '--no-build-isolation', '--no-deps', copy)
-        expect_step(python)
+    for version in VERSIONS:
+        with tempfile.TemporaryDirectory() as folder:
+            if not load_in_all_ways(version, library, package, folder):
+                print(f'skipped: python3-venv or mujoco-core {version} is out of reach')
+                return 77
     return 0
 
 
