@@ -151,9 +151,10 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
       ->check(NumberBetween(1e-9, 1))
       ->type_name("SECONDS");
   command
-      ->add_option("--mesh", options->mesh,
-                   "surface to draw (OBJ, PLY, STL, GLB), where the recording's points are; "
-                   "default: made from the points")
+      ->add_option(
+          "--mesh", options->mesh,
+          "surface to draw (OBJ, PLY, STL, GLB) on which the recording's points are in frame 0; "
+          "glTF is turned from y up to z up; default: made from the points")
       ->type_name("FILE");
   command->add_option("--name", options->name, "prefix of all names; default: the twin's name")
       ->check(NotEmpty());

@@ -9,8 +9,8 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
-#include "exporter/mesh_file.h"
 #include "exporter/mesh_interior.h"
+#include "exporter/mesh_place.h"
 #include "twin/error.h"
 #include "twin/recording.h"
 
@@ -53,9 +53,10 @@ void Run(const InteriorArguments& arguments) {
   ExpectNew(arguments.output, arguments.force);
   Recording recording = ReadRecording(arguments.recording);
   ExpectPlain(recording, arguments.recording);
-  const TriangleMesh mesh = ReadMesh(arguments.mesh);
-  ExpectSamePlace(mesh, recording.start, arguments.mesh);
-  const Points interior = SampleInterior(mesh, arguments.spacing, recording.start);
+  const PlacedMesh placed =
+      ReadMeshAt(arguments.mesh, recording.start.leftCols(recording.point_count()));
+  for (const std::string& warning : placed.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  const Points interior = SampleInterior(placed.mesh, arguments.spacing, recording.start);
   if (interior.cols() == 0) {
     throw Error(
         fmt::format("{}: no point of a lattice of {} m is inside; a smaller --spacing or a "
@@ -81,7 +82,8 @@ void AddInteriorCommand(CLI::App& app) {
       ->type_name("REC.npz");
   command
       ->add_option("--mesh", arguments->mesh,
-                   "surface (OBJ, PLY, STL, GLB), where the recording's points are in frame 0")
+                   "surface (OBJ, PLY, STL, GLB) on which the recording's points are in frame 0; "
+                   "glTF is turned from y up to z up")
       ->required()
       ->type_name("FILE");
   command->add_option("--spacing", arguments->spacing, "of the particles")

@@ -23,6 +23,7 @@ std::vector<int> ChosenLevels(const Twin& twin, const ExportOptions& options) {
 Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::string& command) {
   Export result;
   const Picture picture = MakePicture(twin, options.mesh);
+  result.warnings = picture.warnings;
   for (const int number : ChosenLevels(twin, options)) {
     ExportedLevel level;
     level.plan = PlanLevel(twin, number, options);

@@ -65,21 +65,4 @@ TriangleMesh ReadMesh(const std::string& path) {
   return mesh;
 }
 
-// A mesh in millimetres around points in metres is far larger than that.
-constexpr double kMostTimesLarger = 20;
-
-void ExpectSamePlace(const TriangleMesh& mesh, const Points& points, const std::string& path) {
-  const Eigen::Vector3d mesh_low = mesh.vertices.rowwise().minCoeff(),
-                        mesh_high = mesh.vertices.rowwise().maxCoeff();
-  const Eigen::Vector3d low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
-  const bool overlap =
-      (mesh_low.array() <= high.array()).all() && (mesh_high.array() >= low.array()).all();
-  if (overlap && (mesh_high - mesh_low).norm() < kMostTimesLarger * (high - low).norm()) return;
-  throw Error(fmt::format(
-      "{}: lies from ({:.3g}) to ({:.3g}), the points from ({:.3g}) to ({:.3g}); a mesh must be in "
-      "the coordinates of the recording, in metres",
-      path, fmt::join(mesh_low, ", "), fmt::join(mesh_high, ", "), fmt::join(low, ", "),
-      fmt::join(high, ", ")));
-}
-
 }  // namespace physpring

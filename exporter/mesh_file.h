@@ -14,9 +14,6 @@ namespace physpring {
 // vertices, or a vertex that is not finite.
 TriangleMesh ReadMesh(const std::string& path);
 
-// Throws Error unless the boxes of mesh and points (3 x points, m) overlap.
-void ExpectSamePlace(const TriangleMesh& mesh, const Points& points, const std::string& path);
-
 }  // namespace physpring
 
 #endif  // PHYSPRING_EXPORTER_MESH_FILE_H_

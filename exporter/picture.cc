@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
-#include "exporter/mesh_file.h"
+#include "exporter/mesh_place.h"
 #include "exporter/skin_weights.h"
 #include "exporter/surface.h"
 #include "twin/error.h"
@@ -88,8 +89,9 @@ Picture MakePicture(const Twin& twin, const std::string& mesh_file) {
   const Points nodes = system.position.leftCols(system.node_count());
   Picture picture;
   if (!mesh_file.empty()) {
-    picture.mesh = ReadMesh(mesh_file);
-    ExpectSamePlace(picture.mesh, nodes, mesh_file);
+    PlacedMesh placed = ReadMeshAt(mesh_file, nodes.leftCols(twin.points));
+    picture.mesh = std::move(placed.mesh);
+    picture.warnings = std::move(placed.warnings);
     return picture;
   }
   const double spacing = Spacing(nodes), contact_radius = system.contact_radius.mean();

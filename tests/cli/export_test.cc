@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
+#include "tests/support/mesh_files.h"
 #include "tests/support/program.h"
 #include "tests/support/small_twin.h"
 #include "tests/support/temporary_folder.h"
@@ -89,31 +89,82 @@ TEST_F(Export, BadUsageIsToldAsSuch) {
             "physpring export: --name: takes a name, not '' (see physpring export --help)\n");
 }
 
-// A box around the small twin's particles, 20 mm larger on all sides.
-constexpr char kBox[] =
-    "v -0.02 -0.02 -0.02\nv 0.1 -0.02 -0.02\nv 0.1 0.08 -0.02\nv -0.02 0.08 -0.02\n"
-    "v -0.02 -0.02 0.06\nv 0.1 -0.02 0.06\nv 0.1 0.08 0.06\nv -0.02 0.08 0.06\n"
-    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+// A box around the small twin's particles, 4 mm larger on all sides.
+TriangleMesh Box() {
+  TriangleMesh box;
+  box.vertices.resize(3, 8);
+  box.vertices << 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1;
+  box.vertices = Eigen::Vector3d(0.088, 0.068, 0.028).asDiagonal() * box.vertices;
+  box.vertices.array() -= 0.004;
+  for (const std::array<int, 4>& side : {std::array<int, 4>{3, 2, 1, 0},
+                                         {4, 5, 6, 7},
+                                         {0, 1, 5, 4},
+                                         {1, 2, 6, 5},
+                                         {2, 3, 7, 6},
+                                         {3, 0, 4, 7}}) {
+    box.faces.push_back({side[0], side[1], side[2]});
+    box.faces.push_back({side[0], side[2], side[3]});
+  }
+  return box;
+}
 
-TEST_F(Export, InteriorFillsAMesh) {
+// The small twin's motion, as seen from outside.
+Recording WithoutInterior() {
   Recording recording = RecordingOfMotion(SmallTwin(1), 5);
   recording.interior = Points(3, 0);
   recording.start = Points(3, 34);
   recording.start << recording.points[0], recording.controllers[0];
   recording.rest = recording.start;
   recording.velocity = Points::Zero(3, 32);
-  WriteRecording(recording, folder_.File("swing.npz"));
-  std::ofstream(folder_.File("box.obj")) << kBox;
+  return recording;
+}
+
+TEST_F(Export, InteriorFillsAMesh) {
+  WriteRecording(WithoutInterior(), folder_.File("swing.npz"));
+  WriteObj(Box(), folder_.File("box.obj"));
   const ProgramResult result =
       RunProgram({"interior", folder_.File("swing.npz"), "--mesh", folder_.File("box.obj"),
-                  "--spacing", "0.01", "-o", folder_.File("full.npz")});
+                  "--spacing", "0.005", "-o", folder_.File("full.npz")});
   EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
   const Recording full = ReadRecording(folder_.File("full.npz"));
   EXPECT_EQ(full.point_count(), 32);
-  EXPECT_GT(full.interior_count(), 500);  // of 13 x 11 x 9 points of the lattice
+  EXPECT_GT(full.interior_count(), 1000);  // of 18 x 14 x 6 points of the lattice
+  EXPECT_LE(full.interior_count(), 18 * 14 * 6);
   EXPECT_TRUE(FailsWith(RunProgram({"interior", folder_.File("full.npz"), "--mesh",
                                     folder_.File("box.obj"), "-o", folder_.File("no.npz")}),
                         "has an array 'interior'"));
+}
+
+TEST_F(Export, InteriorIsWhereThePointsAreWhateverTheMeshsFrame) {
+  WriteRecording(WithoutInterior(), folder_.File("swing.npz"));
+  TriangleMesh mesh = Box();
+  const Points upright = mesh.vertices;
+  mesh.vertices.row(1) = upright.row(2);
+  mesh.vertices.row(2) = -upright.row(1);
+  WriteGlb(mesh, folder_.File("y_up.glb"));
+  mesh.vertices = 1000 * upright;
+  WriteObj(mesh, folder_.File("mm.obj"));
+  mesh.vertices = upright.colwise() + Eigen::Vector3d(0.05, 0, 0.03);
+  WriteObj(mesh, folder_.File("pivot.obj"));
+  const auto fill = [&](const std::string& name) {
+    return RunProgram({"interior", folder_.File("swing.npz"), "--mesh", folder_.File(name),
+                       "--spacing", "0.005", "-o", folder_.File(name + ".npz")});
+  };
+  EXPECT_EQ(fill("y_up.glb").errors, "");
+  const ProgramResult millimetres = fill("mm.obj");
+  EXPECT_EQ(millimetres.errors.rfind("warning: " + folder_.File("mm.obj: taken as millimetres"), 0),
+            0u)
+      << millimetres.errors;
+  for (const char* name : {"y_up.glb.npz", "mm.obj.npz"}) {
+    const Points interior = ReadRecording(folder_.File(name)).interior;
+    EXPECT_GT(interior.cols(), 1000) << name;
+    EXPECT_GT(interior.minCoeff(), -0.004) << name;
+    EXPECT_LT((interior.rowwise().maxCoeff() - Eigen::Vector3d(0.084, 0.064, 0.024)).maxCoeff(), 0)
+        << name;
+  }
+  EXPECT_TRUE(FailsWith(fill("pivot.obj"), "is the mesh in another frame or unit?"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("pivot.obj.npz")));
 }
 
 }  // namespace

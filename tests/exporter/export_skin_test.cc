@@ -56,16 +56,36 @@ TEST(ExportSkin, SkinTurnsWithTheNodes) {
   }
 }
 
+// The box of the small twin's nodes.
+constexpr char kBox[] =
+    "v 0 0 0\nv 0.08 0 0\nv 0.08 0.06 0\nv 0 0.06 0\n"
+    "v 0 0 0.02\nv 0.08 0 0.02\nv 0.08 0.06 0.02\nv 0 0.06 0.02\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
 TEST(ExportSkin, AMeshIsWornByAllLevels) {
   const Twin twin = SmallTwin(2);
   const TemporaryFolder files;
-  std::ofstream(files.File("m.obj")) << "v 0 0 0\nv 0.08 0 0\nv 0 0.06 0\nf 1 2 3\n";
+  std::ofstream(files.File("m.obj")) << kBox;
   ExportOptions options;
   options.mesh = files.File("m.obj");
   const ExportedFolder folder(twin, options);
   for (const ExportedLevel& level : folder.result.levels) {
-    EXPECT_EQ(folder.Load(level.scene)->nskinvert, 3);
+    EXPECT_EQ(folder.Load(level.scene)->nskinvert, 8);
   }
+}
+
+TEST(ExportSkin, WhatOfAMeshWasGuessedIsSaid) {
+  const TemporaryFolder files;
+  std::string box = kBox;
+  for (std::size_t i = box.find("0.0"); i != std::string::npos; i = box.find("0.0", i)) {
+    box.replace(i, 3, "");  // 0.08 m are 8 cm
+  }
+  std::ofstream(files.File("m.obj")) << box;
+  ExportOptions options;
+  options.mesh = files.File("m.obj");
+  const std::vector<std::string> warnings = ExportTwin(SmallTwin(1), options, "").warnings;
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_EQ(warnings[0].rfind(options.mesh + ": taken as centimetres, because ", 0), 0u);
 }
 
 TEST(ExportSkin, AMeshMustBeWhereTheTwinIs) {
@@ -78,10 +98,15 @@ TEST(ExportSkin, AMeshMustBeWhereTheTwinIs) {
     ExportTwin(twin, options, "");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.what(),
-              options.mesh +
-                  ": lies from (0, 0, 5) to (0.08, 0.06, 5), the points from (0, 0, 0) to (0.08, "
-                  "0.06, 0.02); a mesh must be in the coordinates of the recording, in metres");
+    EXPECT_EQ(
+        error.what(),
+        options.mesh +
+            ": the measured points are 5 m from the mesh on average, expected less than 0.01 m "
+            "(their spacing is 0.02 m); is the mesh in another frame or unit? the mesh measures "
+            "0.08 "
+            "x 0.06 x 0 m around (0.04, 0.03, 5), the points 0.08 x 0.06 x 0.02 m around (0.04, "
+            "0.03, "
+            "0.01)");
   }
 }
 

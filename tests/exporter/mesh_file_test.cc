@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <vector>
 
+#include "tests/support/mesh_files.h"
 #include "tests/support/temporary_folder.h"
+#include "twin/atomic_file.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -25,32 +25,13 @@ constexpr char kStl[] =
     "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0.5 0 0\nvertex 0 1 0\nvertex 0 0 2\n"
     "endloop\nendfacet\nendsolid t\n";
 
-void AppendWord(std::uint32_t word, std::string* bytes) {
-  char raw[4];
-  std::memcpy(raw, &word, 4);
-  bytes->append(raw, 4);
-}
-
-// Binary glTF: a header, a chunk of JSON and a chunk of data (the specification's section 4).
 std::string Glb() {
-  const std::vector<float> corners{0.5F, 0, 0, 0, 1, 0, 0, 0, 2};
-  std::string json =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
-      R"("min":[0,0,0],"max":[0.5,1,2]}],)"
-      R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})";
-  while (json.size() % 4 != 0) json += ' ';
-  std::string bytes = "glTF";
-  AppendWord(2, &bytes);
-  AppendWord(static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + 36), &bytes);
-  AppendWord(static_cast<std::uint32_t>(json.size()), &bytes);
-  bytes += "JSON" + json;
-  AppendWord(36, &bytes);
-  bytes += std::string("BIN\0", 4);
-  std::string data(36, '\0');
-  std::memcpy(data.data(), corners.data(), 36);
-  return bytes + data;
+  TriangleMesh triangle;
+  triangle.vertices = Points{{0.5, 0, 0}, {0, 1, 0}, {0, 0, 2}};
+  triangle.faces = {{0, 1, 2}};
+  const TemporaryFolder folder;
+  WriteGlb(triangle, folder.File("t.glb"));
+  return ReadFile(folder.File("t.glb"));
 }
 
 class MeshFile : public testing::Test {
