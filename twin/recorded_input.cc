@@ -6,14 +6,18 @@
 namespace physpring {
 namespace {
 
-// Where the controllers are `delay` frames before `frame`; sets how fast that changes with a delay
-// in seconds (at a frame: with a longer delay).
+// Where the controllers are `delay` frames before `frame`, or after it if negative; sets how fast
+// that changes with a delay in seconds (at a frame: with a longer delay).
 Points PlaceBefore(const Recording& recording, int frame, double delay, Points* rate) {
   const double place = frame - delay;
   const int next = static_cast<int>(std::ceil(place));
   if (next <= 0) {
     *rate = Points::Zero(3, recording.controller_count());
     return recording.controllers[0];
+  }
+  if (next >= static_cast<int>(recording.controllers.size())) {
+    *rate = Points::Zero(3, recording.controller_count());
+    return recording.controllers.back();
   }
   const Points &from = recording.controllers[next - 1], &to = recording.controllers[next];
   *rate = (from - to) * recording.fps;

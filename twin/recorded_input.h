@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The input of a frame of a recording: how the recorded controllers move in it, later than recorded
-// by the delay that the system's effects ask for (twin/effects/control_latency.cc).
+// by the delay (earlier, if it is negative) that the system's effects ask for
+// (twin/effects/control_latency.cc).
 #ifndef PHYSPRING_TWIN_RECORDED_INPUT_H_
 #define PHYSPRING_TWIN_RECORDED_INPUT_H_
 
@@ -10,7 +11,7 @@
 namespace physpring {
 
 // The input on the way from frame - 1 to `frame` (>= 1). Controllers are linear between frames and
-// stand still before frame 0.
+// stand still before frame 0 and after the last one.
 FrameInput RecordedInput(const Recording& recording, int frame, double delay);
 
 }  // namespace physpring

@@ -46,6 +46,17 @@ TEST_F(TraceOfATiltedRope, RanksTheTiltFirst) {
   EXPECT_EQ(traces[1].start.size(), 2);
 }
 
+TEST_F(TraceOfATiltedRope, StartsWithControllersThatAreAheadWhereTheyAre) {
+  SpringMassSystem ahead = body_;
+  ahead.effects = {{"control_latency", Eigen::VectorXd::Constant(1, -0.05)}};
+  MoveAs(ahead, true, &recording_);
+  const std::vector<EffectTrace> traces = Trace(body_, 1);
+  EXPECT_GT(traces[0].score, 0.9);
+  EXPECT_LT(traces[1].score, 0.5 * traces[0].score);
+  ASSERT_EQ(traces[0].start.size(), 1);
+  EXPECT_LT(traces[0].start[0], 0);
+}
+
 TEST_F(TraceOfATiltedRope, DoesNotHangOnTheThreads) {
   const std::vector<EffectTrace> one = Trace(body_, 1), two = Trace(body_, 2);
   for (std::size_t i = 0; i < one.size(); ++i) {

@@ -158,6 +158,35 @@ TEST_P(Effects, ComesBackFromJson) {
   EXPECT_EQ(read[1].values, effect.values);
 }
 
+// The case above has controllers that are late.
+TEST(ControlLatency, HasTheDerivativeThatDifferencesShowIfNegative) {
+  TargetedRollout rollout = RandomRollout(4, 1);
+  Recording recording;
+  recording.fps = 1 / rollout.options.frame_time;
+  recording.controllers.push_back(rollout.frames[0].controllers_start);
+  for (const FrameInput& frame : rollout.frames) {
+    recording.controllers.push_back(frame.controllers_end);
+  }
+  rollout.system.effects = {Values(GetEffect("control_latency"), {-0.013})};
+  const auto read_frames = [&] {
+    for (std::size_t i = 0; i < rollout.frames.size(); ++i) {
+      rollout.frames[i] =
+          RecordedInput(recording, static_cast<int>(i) + 1, ControllerDelay(rollout.system));
+    }
+  };
+  read_frames();
+  Eigen::VectorXd& values = rollout.system.effects[0].values;
+  const RolloutGradient gradient = Gradient<double>(rollout);
+  const auto loss = [&] {
+    read_frames();
+    return Loss<double>(rollout);
+  };
+  const GradientReport report = CheckGradient(
+      loss, {{"latency_s", &values[0], kSmooth * 0.02, gradient.system.effects[0][0]}});
+  EXPECT_TRUE(report.passed) << report.log;
+  EXPECT_NE(gradient.system.effects[0][0], 0);
+}
+
 // Laws of bending share the geometry of their triples.
 TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
   TargetedRollout rollout = RandomRollout(4, 1);
