@@ -53,7 +53,11 @@ double ToTriangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eige
 }  // namespace
 
 MeshDistance::MeshDistance(const TriangleMesh& mesh)
-    : mesh_(mesh), centres_(Centres(mesh)), largest_radius_(LargestRadius(mesh)) {}
+    : mesh_(mesh),
+      centres_(Centres(mesh)),
+      largest_radius_(LargestRadius(mesh)),
+      low_(mesh.vertices.rowwise().minCoeff()),
+      high_(mesh.vertices.rowwise().maxCoeff()) {}
 
 // Faces in the order of their centres: one whose centre is farther than the best distance and the
 // largest radius together is farther, and so are all that follow.
@@ -71,6 +75,12 @@ double MeshDistance::At(const Eigen::Vector3d& x) const {
     }
   }
   return best;
+}
+
+double MeshDistance::MeanToBox(const Points& points) const {
+  double sum = 0;
+  for (const auto& x : points.colwise()) sum += (x - x.cwiseMax(low_).cwiseMin(high_)).norm();
+  return sum / static_cast<double>(points.cols());
 }
 
 double MeshDistance::Mean(const Points& points) const {

@@ -17,11 +17,15 @@ class MeshDistance {
   double At(const Eigen::Vector3d& x) const;
   // Their mean over columns of `points` (3 x points, at least one), m.
   double Mean(const Points& points) const;
+  // Mean distance to the mesh's box, m: never more than Mean, and quick. Far from a mesh of many
+  // faces Mean is slow, because all of them are about as near.
+  double MeanToBox(const Points& points) const;
 
  private:
   const TriangleMesh& mesh_;
-  NeighbourSearch centres_;  // of the faces
-  double largest_radius_;    // m: no corner is farther from the centre of its face
+  NeighbourSearch centres_;     // of the faces
+  double largest_radius_;       // m: no corner is farther from the centre of its face
+  Eigen::Vector3d low_, high_;  // m, of the box
 };
 
 }  // namespace physpring

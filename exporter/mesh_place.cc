@@ -27,6 +27,7 @@ constexpr double kNear = 1 / 3.0;
 // Fewer points say too little about axes and units.
 constexpr int kFewPoints = 4;
 constexpr int kMostPoints = 500;  // that are compared
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::Vector3d SidesOfBox(const Points& points) {
   return points.rowwise().maxCoeff() - points.rowwise().minCoeff();
@@ -87,10 +88,12 @@ Eigen::Matrix3d Turn(const Reading& reading) {
   return turn;
 }
 
-// In the coordinates of the file, so that one search serves all readings.
-Fit FitOf(const Reading& reading, const MeshDistance& mesh, const Points& points) {
+// In the coordinates of the file, so that one search serves all readings. Where the mean distance
+// is more than `enough`, another one that is more may come out.
+Fit FitOf(const Reading& reading, const MeshDistance& mesh, const Points& points, double enough) {
   const Points in_file = Turn(reading).transpose() * points / reading.scale;
-  return {reading, reading.scale * mesh.Mean(in_file)};
+  const double at_least = reading.scale * mesh.MeanToBox(in_file);
+  return {reading, at_least > enough ? at_least : reading.scale * mesh.Mean(in_file)};
 }
 
 // glTF: "the up axis is +Y" (glTF 2.0, section 3.4). Assimp turns Collada to y up, too.
@@ -103,9 +106,10 @@ bool IsYUp(const std::string& path) {
 
 // The reading by the rule, or the other way up where that is clearly better.
 Fit BetterWayUp(bool y_up, double scale, const MeshDistance& mesh, const Measured& measured) {
-  const Fit rule = FitOf({y_up, scale}, mesh, measured.points);
+  const double enough = 2 * measured.tolerance;
+  const Fit rule = FitOf({y_up, scale}, mesh, measured.points, enough);
   if (rule.distance < kNear * measured.tolerance) return rule;
-  const Fit other = FitOf({!y_up, scale}, mesh, measured.points);
+  const Fit other = FitOf({!y_up, scale}, mesh, measured.points, enough);
   return other.distance < std::min(measured.tolerance, rule.distance / 2) ? other : rule;
 }
 
@@ -168,7 +172,7 @@ PlacedMesh ReadMeshAt(const std::string& path, const Points& points) {
   const bool y_up = IsYUp(path);
   Measured measured = Measure(points, mesh);
   const MeshDistance distance(mesh);
-  const Fit rule = FitOf({y_up, 1}, distance, measured.points);
+  const Fit rule = FitOf({y_up, 1}, distance, measured.points, kInfinity);
   std::optional<Fit> fit = rule;
   if (points.cols() >= kFewPoints) {
     fit = FindFit(y_up, distance, measured);

@@ -51,6 +51,17 @@ TEST(MeshDistance, IsToTheNearestOfManyFacesOfAllSizes) {
   }
 }
 
+TEST(MeshDistance, ToTheBoxIsNeverMore) {
+  const TriangleMesh triangle = Triangle();
+  const MeshDistance mesh(triangle);
+  EXPECT_NEAR(mesh.MeanToBox(Eigen::Vector3d(0.9, 0.9, -2)), 2, 1e-15);
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Points points = random.Box(3, 2);
+    EXPECT_LE(mesh.MeanToBox(points), mesh.Mean(points) + 1e-15);
+  }
+}
+
 TEST(MeshDistance, FacesWithoutAreaAreEdges) {
   TriangleMesh mesh = Triangle();
   mesh.faces = {{0, 1, 1}, {2, 2, 2}};
