@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/message.h"
 #include "cli/output_files.h"
 #include "cli/train_options.h"
 #include "training_code.h"
@@ -39,9 +40,8 @@ bool IsFinished(const Twin& twin) {
 
 void WarnIfUnfinished(const Twin& twin, const std::string& path) {
   if (IsFinished(twin)) return;
-  fmt::print(stderr,
-             "warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
-             path);
+  Tell("warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
+       path);
 }
 
 Checkpoint::Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,

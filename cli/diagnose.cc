@@ -16,6 +16,7 @@
 #include "cli/commands.h"
 #include "cli/diagnosis_checkpoint.h"
 #include "cli/interrupt.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
@@ -31,6 +32,8 @@
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/numbering.h"
+#include "twin/output_lock.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -63,10 +66,10 @@ void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
   for (const auto* recordings : {&chosen.fit, &chosen.held_out}) {
     for (const Recording& recording : *recordings) {
       if (std::abs(recording.mass - mass) <= kAlike * mass) continue;
-      fmt::print(stderr,
-                 "warning: recording {}: says that the object weighs {:.4g} kg; the twin's "
-                 "{:.4g} kg are taken\n",
-                 recording.name, recording.mass, mass);
+      Tell(
+          "warning: recording {}: says that the object weighs {:.4g} kg; the twin's "
+          "{:.4g} kg are taken\n",
+          recording.name, recording.mass, mass);
     }
   }
 }
@@ -74,17 +77,16 @@ void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
 // Such a twin lacks what is not in the list of effects, or it is not of this object.
 void WarnIfUseless(const Diagnosis& diagnosis) {
   if (!(diagnosis.after.held > diagnosis.motionless)) return;
-  fmt::print(stderr,
-             "warning: the twin predicts worse than a body that does not move ({:.4g} m against "
-             "{:.4g} m): are the recordings of its object, in metres, with points in its order?\n",
-             diagnosis.after.held, diagnosis.motionless);
+  Tell(
+      "warning: the twin predicts worse than a body that does not move ({:.4g} m against "
+      "{:.4g} m): are the recordings of its object, in metres, with points in its order?\n",
+      diagnosis.after.held, diagnosis.motionless);
 }
 
 // Only level 0 is fitted.
 void WarnOfCoarseLevels(const Twin& twin) {
   if (twin.levels.size() < 2) return;
-  fmt::print(
-      stderr,
+  Tell(
       "warning: coarse levels have the effects, but are not fitted with them: physpring train "
       "--effects fits a hierarchy\n");
 }
@@ -93,11 +95,7 @@ void WarnOfCoarseLevels(const Twin& twin) {
 Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<RecordingEntry>& fit,
                     const std::vector<RecordingEntry>& held_out) {
   const std::filesystem::path folder(arguments.output);
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) {
-    throw Error(fmt::format("{}: cannot be made: {}", arguments.output, failure.message()));
-  }
+  MakeFolder(arguments.output);
   const Outputs outputs{(folder / "report.json").string(), (folder / "report.html").string(),
                         (folder / std::filesystem::path(arguments.twin).filename()).string(),
                         (folder / "checkpoint.npz").string()};
@@ -120,7 +118,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
   std::optional<Progress> progress;  // begins with the first piece that is not in the checkpoint
   double done = 0;
   journal.progress = [&](double share, const std::string& status) {
-    if (watch.signal() != 0) throw Interrupted{watch.signal()};
+    StopIfRequested();
     if (!progress) progress.emplace(share);
     done = std::max(done, share);
     progress->Show(share, status);
@@ -138,13 +136,12 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
     Diagnosis diagnosis = Diagnose(twin, recordings, held_out, options);
     checkpoint.Write(journal);
     return diagnosis;
-  } catch (const Interrupted&) {
+  } catch (const Stopped&) {
     progress.reset();
     checkpoint.Write(journal);
-    fmt::print(stderr,
-               "physpring: stopped at {:.0f} %; the same command with --resume goes on from {}\n",
-               std::min(99.0, 100 * done), checkpoint.path());
-    throw;
+    Tell("physpring: stopped at {:.0f} %; the same command with --resume goes on from {}\n",
+         std::min(99.0, 100 * done), checkpoint.path());
+    throw Interrupted{watch.signal()};
   }
 }
 
@@ -166,6 +163,7 @@ void Run(const DiagnoseArguments& arguments) {
   }
   const DiagnosisRecordings chosen = ChooseRecordings(data, judged);
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
+  const OutputLock lock(arguments.output);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen.fit,
                                        chosen.held_out, arguments.options);
   const bool replace = arguments.run.resume || arguments.run.force;

@@ -11,6 +11,7 @@
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/fit_report.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/warnings.h"
@@ -91,13 +92,13 @@ void Run(const EvalArguments& arguments) {
     recordings.push_back(evaluated.recording);
   }
   PrintRemarks(recordings);
-  fmt::print("{}", FormatTables(evaluation));
-  WarnIfUseless(evaluation);
   if (!arguments.trajectory.empty()) WriteTrajectories(evaluation, arguments.trajectory);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, FormatJson(evaluation));
   if (!arguments.picture.empty()) {
     WriteFileAtomically(arguments.picture, FormatPage(evaluation));
   }
+  fmt::print("{}", FormatTables(evaluation));
+  WarnIfUseless(evaluation);
 }
 
 }  // namespace

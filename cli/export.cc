@@ -13,6 +13,7 @@
 
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "exporter/folder.h"
 #include "twin/free_twin.h"
@@ -104,7 +105,7 @@ void Run(const ExportArguments& arguments, const std::string& command_line) {
   const Export result = ExportTwin(twin, arguments.options, command_line);
   WriteFolder(arguments.output, result.files, arguments.force);
   for (const std::string& warning : result.warnings) {
-    fmt::print(stderr, "warning: {}: {}\n", arguments.twin, warning);
+    Tell("warning: {}: {}\n", arguments.twin, warning);
   }
   fmt::print("{}\n", arguments.output);
   for (const ExportedLevel& level : result.levels) fmt::print("{}", DescribeLevel(level));

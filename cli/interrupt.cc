@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/interrupt.h"
 
+#include "twin/stop_request.h"
+
 namespace physpring {
 namespace {
 
@@ -9,6 +11,7 @@ volatile sig_atomic_t noted_signal = 0;
 
 void NoteSignal(int signal) {
   noted_signal = signal;
+  RequestStop(true);
   struct sigaction usual {};
   usual.sa_handler = SIG_DFL;
   sigaction(SIGINT, &usual, nullptr);
@@ -19,6 +22,7 @@ void NoteSignal(int signal) {
 
 InterruptWatch::InterruptWatch() {
   noted_signal = 0;
+  RequestStop(false);
   struct sigaction note {};
   note.sa_handler = NoteSignal;
   note.sa_flags = SA_RESTART;
@@ -27,6 +31,7 @@ InterruptWatch::InterruptWatch() {
 }
 
 InterruptWatch::~InterruptWatch() {
+  RequestStop(false);
   sigaction(SIGINT, &old_interrupt_, nullptr);
   sigaction(SIGTERM, &old_terminate_, nullptr);
 }

@@ -14,7 +14,8 @@ struct Interrupted {
   int signal;
 };
 
-// While it lives, the first signal is only noted. Only one may live at a time.
+// While it lives, the first signal is noted, and libraries are asked to stop (twin/stop_request.h):
+// what they work on throws Stopped. Only one may live at a time.
 class InterruptWatch {
  public:
   InterruptWatch();

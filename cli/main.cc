@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/standard_streams.h"
 
 namespace {
 
@@ -31,11 +33,19 @@ void RenameOldReplay(int argc, char** argv) {
   argv[1] = replay;
 }
 
-}  // namespace
+// Says what went wrong, in one line.
+int Fail(const std::string& what) {
+  std::fprintf(stderr, "physpring: %s\n", what.c_str());
+  return 1;
+}
 
-int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is a failed write like others
-  RenameOldReplay(argc, argv);
+// One that was interrupted or used badly says so even if its output is lost.
+int FailUnlessPrinted(int status) {
+  const std::string why = physpring::WhyNotPrinted();
+  return status != 0 || why.empty() ? status : Fail("standard output: cannot be written: " + why);
+}
+
+int RunProgram(int argc, char** argv) {
   CLI::App app("Learns spring-mass twins of deformable objects from recordings.", "physpring");
   app.set_version_flag("--version", "physpring " PHYSPRING_VERSION);
   app.require_subcommand(1);
@@ -63,8 +73,19 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const physpring::Interrupted& interrupted) {
     return 128 + interrupted.signal;
+  } catch (const std::system_error& error) {  // printing throws it, too
+    if (std::ferror(stdout) == 0) return Fail(error.what());
+    return Fail("standard output: cannot be written: " + error.code().message());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "physpring: %s\n", error.what());
-    return 1;
+    return Fail(error.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is a failed write like others
+  physpring::OpenClosedStreams();
+  RenameOldReplay(argc, argv);
+  return FailUnlessPrinted(RunProgram(argc, argv));
 }

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cli/message.h"
+
 namespace physpring {
 namespace {
 
@@ -51,21 +53,32 @@ Progress::~Progress() {
   if (drawn_) std::fputs("\n", stderr);
 }
 
+double Progress::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+double Progress::SecondsLeft(double share) const {
+  const double done = share - start_share_;
+  return done > 0 ? seconds() / done * (1 - share) : -1;
+}
+
+void Progress::Say(const std::string& line) const {
+  Tell("{}{}\n", drawn_ ? "\r\x1b[K" : "", line);
+}
+
 void Progress::Show(double share, const std::string& status) {
   const Clock::time_point now = Clock::now();
   if (now - shown_ < (terminal_ ? Clock::duration(kRedraw) : Clock::duration(kNextLine))) return;
   shown_ = now;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double done = share - start_share_;
-  const double left = done > 0 ? elapsed / done * (1 - share) : -1;
+  const double left = SecondsLeft(share);
   if (terminal_) {
     // one column less: a full line would wrap; the escape sequence clears the rest of the line
     const std::string bar = FormatProgress(share, left, status, TerminalWidth() - 1);
-    fmt::print(stderr, "\r{}\x1b[K", bar);
+    Tell("\r{}\x1b[K", bar);
     std::fflush(stderr);
     drawn_ = true;
   } else {
-    fmt::print(stderr, "{}\n", FormatProgress(share, left, status, 0));
+    Tell("{}\n", FormatProgress(share, left, status, 0));
   }
 }
 

@@ -28,6 +28,12 @@ class Progress {
   // pace of the work since the start.
   void Show(double share, const std::string& status);
 
+  // Says something in a line of its own.
+  void Say(const std::string& line) const;
+
+  double seconds() const;                  // since it was made
+  double SecondsLeft(double share) const;  // below 0 while that is not known
+
  private:
   using Clock = std::chrono::steady_clock;
 

@@ -10,10 +10,14 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/warnings.h"
 #include "twin/error.h"
+#include "twin/output_lock.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -51,11 +55,23 @@ std::string ListEffects() {
   return list;
 }
 
+// Ends by Interrupted where a signal comes before there is anything to write.
+Recording Simulate(const std::string& scene, const RecordOptions& options) {
+  const InterruptWatch watch;
+  try {
+    return RecordScene(scene, options);
+  } catch (const Stopped&) {
+    Tell("physpring: stopped; nothing was written\n");
+    throw Interrupted{watch.signal()};
+  }
+}
+
 void Run(const std::string& scene, const std::string& output, bool force,
          const RecordOptions& options) {
   ExpectOutputs({output}, {scene});
+  const OutputLock lock(output);
   ExpectNew(output, force);
-  const Recording recording = RecordScene(scene, options);
+  const Recording recording = Simulate(scene, options);
   WriteRecording(recording, output);
   PrintRemarks({recording});
   fmt::print("{}: {} frames at {} fps, {} points, {} interior, {} controllers, {:.4g} kg\n", output,

@@ -148,9 +148,9 @@ void Run(const ReplayArguments& arguments) {
   }
   PrintWarnings(replay.warnings);
   const ReplayErrors errors = ErrorsOf(replay, recording);
+  if (!arguments.json.empty()) WriteReport(arguments, recording, replay, errors);
   PrintTable(arguments, recording, replay, errors);
   WarnIfUseless(recording, errors);
-  if (!arguments.json.empty()) WriteReport(arguments, recording, replay, errors);
 }
 
 }  // namespace

@@ -16,10 +16,12 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/picture_words.h"
 #include "cli/progress.h"
+#include "cli/warnings.h"
 #include "report/rollout_report.h"
 #include "rollout/camera_thread.h"
 #include "rollout/make_policy.h"
@@ -79,10 +81,10 @@ CLI::Validator TakesPolicy() {
       "");
 }
 
-// Prints the tables and writes the report.
+// Writes the report and prints the tables.
 void Report(const std::vector<JudgedPolicy>& policies, const std::string& json) {
-  fmt::print("{}", FormatTables(policies));
   if (!json.empty()) WriteFileAtomically(json, FormatJson(policies));
+  fmt::print("{}", FormatTables(policies));
 }
 
 // out.mp4, or out_level3_00007.mp4 where there are several.
@@ -126,8 +128,7 @@ void WarnOfProblems(const std::vector<EpisodeSummary>& episodes) {
     if (!episode.problem.empty()) ++problems[episode.problem];
   }
   for (const auto& [problem, count] : problems) {
-    fmt::print(stderr, "warning: {} of {} episodes ended early: {}\n", count, episodes.size(),
-               problem);
+    Tell("warning: {} of {} episodes ended early: {}\n", count, episodes.size(), problem);
   }
 }
 
@@ -143,6 +144,7 @@ void Run(const RolloutArguments& arguments) {
     WriteFileAtomically(arguments.save_scene,
                         FormatSceneFile(task, arguments.sweep.levels.front()));
   }
+  const SweepOptions& options = arguments.sweep;
   const InterruptWatch watch;
   Progress progress(0);
   int successes = 0, judged = 0;
@@ -156,15 +158,13 @@ void Run(const RolloutArguments& arguments) {
         static_cast<double>(done) / all,
         fmt::format("episode {} of {}, {} of {} succeeded", done, all, successes, judged));
   };
-  const SweepOptions& options = arguments.sweep;
   const Sweep sweep = RunSweep(task, options, hooks);
-  std::set<std::string> warnings(sweep.warnings.begin(), sweep.warnings.end());
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  PrintWarnings(sweep.warnings);
   WarnOfProblems(sweep.episodes);
   if (!sweep.complete) {
-    fmt::print(stderr, "physpring: stopped; {} finished episodes are {}\n", sweep.episodes.size(),
-               options.folder.empty() ? "lost, because there is no --output"
-                                      : "kept in " + options.folder);
+    Tell("physpring: stopped; {} finished episodes are {}\n", sweep.episodes.size(),
+         options.folder.empty() ? "lost, because there is no --output"
+                                : "kept in " + options.folder);
     throw Interrupted{watch.signal()};
   }
   if (sweep.skipped > 0) {

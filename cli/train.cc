@@ -17,6 +17,7 @@
 #include "cli/commands.h"
 #include "cli/fit_report.h"
 #include "cli/interrupt.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
@@ -28,6 +29,7 @@
 #include "trainer/reduction/registry.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
+#include "twin/output_lock.h"
 #include "twin/predict.h"
 
 namespace physpring {
@@ -81,13 +83,17 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
   return options;
 }
 
-// Each step a line of the file with the time; without a file nowhere.
-void OpenLog(const std::string& path, bool append) {
+// Each step a line of the file with the time; without a file nowhere. The first failure to write
+// one goes to `failure`: it stops no training.
+void OpenLog(const std::string& path, bool append, std::string* failure) {
   try {
     const auto logger = path.empty() ? spdlog::null_logger_mt("train")
                                      : spdlog::basic_logger_mt("train", path, !append);
     logger->set_pattern("%Y-%m-%d %H:%M:%S  %v");
     logger->flush_on(spdlog::level::info);
+    logger->set_error_handler([failure](const std::string& what) {
+      if (failure->empty()) *failure = what;
+    });
     spdlog::set_default_logger(logger);
   } catch (const spdlog::spdlog_ex& error) {
     throw Error(fmt::format("{}: cannot be written: {}", path, error.what()));
@@ -160,9 +166,11 @@ void Run(const TrainArguments& arguments) {
   std::optional<Twin> dense;
   if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data);
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
-  checkpoint.ExpectReplaceable(arguments.run.resume || arguments.run.force);
   ExpectWritable(arguments, entries);
-  OpenLog(arguments.log, arguments.run.resume);
+  const OutputLock lock(arguments.output);
+  checkpoint.ExpectReplaceable(arguments.run.resume || arguments.run.force);
+  std::string log_failure;
+  OpenLog(arguments.log, arguments.run.resume, &log_failure);
   PrintRemarks(data.recordings);
   for (const std::string& warning : JoinAlike(WarningsOf(data.recordings))) {
     spdlog::info("warning: {}", warning);
@@ -171,10 +179,10 @@ void Run(const TrainArguments& arguments) {
   const TrainingRun run = RunTraining({data, options, dense}, checkpoint, arguments.run.resume,
                                       arguments.run.checkpoint_interval);
   if (run.signal != 0) {
-    fmt::print(stderr,
-               "physpring: stopped at {:.0f} %; the same command with --resume goes on "
-               "from {}\n",
-               std::min(99.0, 100 * run.share), arguments.output);
+    Tell(
+        "physpring: stopped at {:.0f} %; the same command with --resume goes on "
+        "from {}\n",
+        std::min(99.0, 100 * run.share), arguments.output);
     throw Interrupted{run.signal};
   }
   Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
@@ -182,6 +190,10 @@ void Run(const TrainArguments& arguments) {
   Warn(fit.warnings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   PrintReport(arguments.output, run, fit.line, elapsed.count());
+  if (!log_failure.empty()) {
+    throw Error(fmt::format("{}: has not all lines, though {} is whole: {}", arguments.log,
+                            arguments.output, log_failure));
+  }
 }
 
 void AddTwinInputs(CLI::App* command, TrainArguments* arguments) {

@@ -11,7 +11,9 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/training_hint.h"
 #include "trainer/fits/train.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -38,12 +40,19 @@ void AddTime(const std::string& part, double seconds,
 // A run in progress: what its journal calls.
 class Running {
  public:
-  Running(const Checkpoint& checkpoint, double interval, Journal* journal, TrainingRun* run)
-      : checkpoint_(checkpoint), interval_(interval), journal_(*journal), run_(*run) {
+  Running(const TrainOptions& options, const Checkpoint& checkpoint, double interval,
+          Journal* journal, TrainingRun* run)
+      : options_(options),
+        checkpoint_(checkpoint),
+        interval_(interval),
+        journal_(*journal),
+        run_(*run) {
     journal->progress = [this](double share, const std::string& status) { Begin(share, status); };
     journal->kept = [this](const Journal::Piece& piece) { End(piece); };
     journal->reached = [this](const Twin& twin) { so_far_ = twin; };
   }
+
+  int signal() const { return interrupt_.signal(); }
 
   void WriteUnfinished() {
     const Stopwatch writing;
@@ -60,9 +69,14 @@ class Running {
  private:
   // Before a step.
   void Begin(double share, const std::string& status) {
-    if (interrupt_.signal() != 0) throw Interrupted{interrupt_.signal()};
+    StopIfRequested();
     if (!progress_) progress_.emplace(share);
     progress_->Show(share, status);
+    if (hinted_) return;
+    const std::string hint =
+        HintIfLong(options_, progress_->seconds(), progress_->SecondsLeft(share));
+    hinted_ = !hint.empty();
+    if (hinted_) progress_->Say(hint);
   }
   // After a step.
   void End(const Journal::Piece& piece) {
@@ -82,12 +96,14 @@ class Running {
   }
 
   const InterruptWatch interrupt_;
+  const TrainOptions& options_;
   const Checkpoint& checkpoint_;
   double interval_;
   Journal& journal_;
   TrainingRun& run_;
   Twin so_far_;
   std::optional<Progress> progress_;  // from the first step on that is not in the checkpoint
+  bool hinted_ = false;
   Stopwatch since_step_, since_checkpoint_;
   double checkpoint_seconds_ = 0;
 };
@@ -105,12 +121,12 @@ TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, 
       return run;
     }
   }
-  Running running(checkpoint, interval, &journal, &run);
+  Running running(task.options, checkpoint, interval, &journal, &run);
   try {
     const Work work(&journal, checkpoint.Key());
     running.WriteFinished(Train(task.data, task.options, task.dense, work));
-  } catch (const Interrupted& stop) {
-    run.signal = stop.signal;
+  } catch (const Stopped&) {
+    run.signal = running.signal();
     running.WriteUnfinished();
   }
   return run;

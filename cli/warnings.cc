@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "cli/message.h"
+
 namespace physpring {
 namespace {
 
@@ -40,8 +42,7 @@ std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings) {
 }
 
 void PrintWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : JoinAlike(warnings))
-    fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : JoinAlike(warnings)) Tell("warning: {}\n", warning);
 }
 
 std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/npz.h"
 
@@ -221,9 +222,7 @@ void WriteTrajectories(const Evaluation& evaluation, const std::string& path) {
                     "each other",
                     path, evaluated.recording.name));
   }
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) throw Error(fmt::format("{}: cannot be made: {}", path, error.message()));
+  MakeFolder(path);
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {
     WriteNpz(TrajectoryOf(evaluated),
              (std::filesystem::path(path) / (evaluated.recording.name + ".npz")).string());

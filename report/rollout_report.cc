@@ -15,8 +15,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct LevelOutcome {
-  int episodes = 0, successes = 0, problems = 0, frames = 0;
-  EpisodeSeconds seconds;
+  int episodes = 0, successes = 0, problems = 0;
+  int timed = 0, frames = 0;  // episodes of which the times are known, and their frames
+  EpisodeSeconds seconds;     // theirs, added up
   double rate() const { return episodes == 0 ? 0 : static_cast<double>(successes) / episodes; }
 };
 
@@ -72,6 +73,16 @@ std::vector<PolicyComparison> ComparePolicies(const std::vector<JudgedPolicy>& p
   return comparisons;
 }
 
+void AddTimes(const EpisodeSeconds& seconds, int frames, LevelOutcome* level) {
+  ++level->timed;
+  level->frames += frames;
+  level->seconds.physics += seconds.physics;
+  level->seconds.policy += seconds.policy;
+  level->seconds.scoring += seconds.scoring;
+  level->seconds.rendering += seconds.rendering;
+  level->seconds.total += seconds.total;
+}
+
 PolicyResult Count(const JudgedPolicy& policy) {
   PolicyResult result;
   for (const EpisodeSummary& episode : policy.episodes) {
@@ -79,12 +90,7 @@ PolicyResult Count(const JudgedPolicy& policy) {
     ++level.episodes;
     level.successes += episode.success ? 1 : 0;
     level.problems += episode.problem.empty() ? 0 : 1;
-    level.frames += episode.frames;
-    level.seconds.physics += episode.seconds.physics;
-    level.seconds.policy += episode.seconds.policy;
-    level.seconds.scoring += episode.seconds.scoring;
-    level.seconds.rendering += episode.seconds.rendering;
-    level.seconds.total += episode.seconds.total;
+    if (episode.seconds) AddTimes(*episode.seconds, episode.frames, &level);
   }
   const Verdicts success = VerdictsOf(policy);
   if (success.empty()) return result;
@@ -102,7 +108,7 @@ std::string FormatLevels(const PolicyResult& result) {
                   "policy", "scoring", "rendering", "frames/s");
   for (const auto& [number, level] : result.levels) {
     const Interval interval = WilsonInterval(level.successes, level.episodes);
-    const double n = std::max(1, level.episodes);
+    const double n = std::max(1, level.timed);
     text += fmt::format(
         "{:>5} {:>9} {:>4} ({:4.1f} %) {:>6.1f} - {:4.1f} % {:>9} | {:>9.3f} {:>8.3f} {:>7.3f} "
         "{:>8.3f} {:>9.3f} | {:>8.1f}\n",
@@ -161,7 +167,7 @@ Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : 
 Json ToJson(int number, const LevelOutcome& level) {
   const Interval interval = WilsonInterval(level.successes, level.episodes);
   const EpisodeSeconds& s = level.seconds;
-  const double n = std::max(1, level.episodes);
+  const double n = std::max(1, level.timed);
   return {{"level", number},
           {"episodes", level.episodes},
           {"successes", level.successes},

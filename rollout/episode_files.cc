@@ -25,7 +25,8 @@ Json ToJson(const Pose& pose) {
   return {{"position", ToJson(pose.position)}, {"quaternion", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-std::string FormatVerdict(const TaskEpisode& episode) {
+// `hash`: of the file with states and actions.
+std::string FormatVerdict(const TaskEpisode& episode, const std::string& hash) {
   const EpisodeSummary summary = Summarise({episode, {}});
   const Json json = {{"episode", summary.episode},
                      {"level", summary.level},
@@ -36,7 +37,8 @@ std::string FormatVerdict(const TaskEpisode& episode) {
                      {"success", summary.success},
                      {"met_frames", summary.met_frames},
                      {"value", summary.value},
-                     {"problem", summary.problem}};
+                     {"problem", summary.problem},
+                     {"npz_hash", hash}};
   return json.dump(1) + "\n";
 }
 
@@ -79,10 +81,28 @@ Npz Arrays(const TaskEpisode& episode, bool states) {
   return arrays;
 }
 
-EpisodeSeconds ReadSeconds(const std::string& file) {
-  const JsonFields fields(ReadFile(file), file);
-  return {fields.Number("physics"), fields.Number("policy"), fields.Number("scoring"),
-          fields.Number("rendering"), fields.Number("total")};
+// Nothing where they are missing or damaged: no result depends on them.
+std::optional<EpisodeSeconds> ReadSeconds(const std::string& file) {
+  try {
+    const JsonFields fields(ReadFile(file), file);
+    return EpisodeSeconds{fields.Number("physics"), fields.Number("policy"),
+                          fields.Number("scoring"), fields.Number("rendering"),
+                          fields.Number("total")};
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+// Throws Error unless the file with states and actions is the one of the verdict.
+void ExpectSound(const std::string& file, const JsonFields& verdict) {
+  if (!verdict.Has("npz_hash")) {  // of a version that did not know the hash
+    ReadNpz(file);
+    return;
+  }
+  const std::string hash = HashFile(file);
+  if (hash != verdict.Text("npz_hash")) {
+    throw Error(fmt::format("{}: is damaged: its hash is not the one in the verdict", file));
+  }
 }
 
 }  // namespace
@@ -108,9 +128,10 @@ std::string EpisodePath(const std::string& folder, int level, int episode) {
 void WriteEpisode(const std::string& folder, const EpisodeResult& result, bool states) {
   const TaskEpisode& episode = result.episode;
   const std::string path = EpisodePath(folder, episode.level, episode.start.episode);
-  WriteNpz(Arrays(episode, states), path + ".npz");
+  const std::string bytes = PackNpz(Arrays(episode, states), path + ".npz");
+  WriteFileAtomically(path + ".npz", bytes);
   WriteFileAtomically(path + ".seconds.json", FormatSeconds(result.seconds));
-  WriteFileAtomically(path + ".json", FormatVerdict(episode));
+  WriteFileAtomically(path + ".json", FormatVerdict(episode, HashBytes(bytes)));
 }
 
 std::optional<EpisodeSummary> ReadEpisode(const std::string& folder, int level, int episode) {
@@ -130,6 +151,7 @@ std::optional<EpisodeSummary> ReadEpisode(const std::string& folder, int level, 
   summary.value = fields.Number("value");
   summary.problem = fields.Text("problem");
   summary.seconds = ReadSeconds(path + ".seconds.json");
+  ExpectSound(path + ".npz", fields);
   return summary;
 }
 

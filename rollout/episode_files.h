@@ -21,7 +21,7 @@ struct EpisodeSummary {
   int met_frames = 0;
   double value = 0;  // the success rule's in the last frame; 0 without frames
   std::string problem;
-  EpisodeSeconds seconds;
+  std::optional<EpisodeSeconds> seconds;  // nothing where their file is not sound
 };
 
 EpisodeSummary Summarise(const EpisodeResult& result);
@@ -33,7 +33,8 @@ std::string EpisodePath(const std::string& folder, int level, int episode);
 // actions. Throws Error when they cannot be written.
 void WriteEpisode(const std::string& folder, const EpisodeResult& result, bool states);
 
-// The summary of a finished episode, or nothing. Throws Error when its files are damaged.
+// The summary of a finished episode, or nothing. Throws Error, beginning with the file, when one of
+// its files is damaged, or the one with states and actions is missing.
 std::optional<EpisodeSummary> ReadEpisode(const std::string& folder, int level, int episode);
 
 }  // namespace physpring

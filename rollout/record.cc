@@ -14,6 +14,7 @@
 #include "rollout/soft_points.h"
 #include "rollout/undeclared_effects.h"
 #include "twin/error.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -107,6 +108,7 @@ struct RecordingRun {
 
   // By one step, the mocap bodies being where they are at its end.
   void Advance(long step, const std::string& where) {
+    StopIfRequested();
     path.Place(TimeOf(step - lag) + model->opt.timestep, data);
     effects.Drive(TimeOf(step), model, data);
     try {

@@ -5,10 +5,14 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "rollout/make_policy.h"
 #include "rollout/sweep_folder.h"
+#include "twin/atomic_file.h"
+#include "twin/error.h"
+#include "twin/output_lock.h"
 
 namespace physpring {
 namespace {
@@ -104,6 +108,18 @@ class Queue {
   std::exception_ptr failure_;
 };
 
+// An episode that need not be run again. Where its files are damaged, says so and finds none.
+std::optional<EpisodeSummary> FindFinished(const std::string& folder, int level, int episode,
+                                           std::vector<std::string>* warnings) {
+  if (folder.empty()) return std::nullopt;
+  try {
+    return ReadEpisode(folder, level, episode);
+  } catch (const Error& error) {
+    warnings->push_back(std::string(error.what()) + "; the episode is run again");
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 Sweep RunSweep(const Task& task, const SweepOptions& options, const SweepHooks& hooks) {
@@ -115,14 +131,18 @@ Sweep RunSweep(const Task& task, const SweepOptions& options, const SweepHooks& 
     hashes[level] = HashModel(*models.back().model);
     if (hooks.prepare) hooks.prepare(models.back().model.get());
   }
-  if (!options.folder.empty()) OpenSweepFolder(task, options, hashes);
+  std::optional<OutputLock> lock;
+  if (!options.folder.empty()) {
+    MakeFolder(options.folder);
+    lock.emplace(options.folder);
+    OpenSweepFolder(task, options, hashes);
+  }
 
   std::vector<Job> jobs;
   for (int i = options.shard - 1; i < options.episodes; i += options.shards) {
     for (const TaskModel& model : models) {
       const int episode = options.first + i;
-      std::optional<EpisodeSummary> finished;
-      if (!options.folder.empty()) finished = ReadEpisode(options.folder, model.level, episode);
+      const auto finished = FindFinished(options.folder, model.level, episode, &sweep.warnings);
       if (finished) {
         sweep.episodes.push_back(*finished);
       } else {

@@ -42,11 +42,12 @@ struct Sweep {
   std::vector<EpisodeSummary> episodes;  // by number, then level; all that are finished
   int skipped = 0;                       // how many were found finished in the folder
   bool complete = true;                  // not stopped
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;     // also which episodes were damaged, and so run again
 };
 
 // Throws Error for a task that cannot be simulated, a policy that cannot be made, a folder that
-// holds another sweep or cannot be written.
+// holds another sweep, cannot be written or is written by another run. An episode whose files in
+// the folder are damaged is run again.
 Sweep RunSweep(const Task& task, const SweepOptions& options, const SweepHooks& hooks);
 
 }  // namespace physpring

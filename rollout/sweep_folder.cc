@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/atomic_file.h"
+#include "twin/draft_file.h"
 #include "twin/error.h"
 #include "twin/json_fields.h"
 #include "twin/npz.h"
@@ -40,6 +41,25 @@ int NumberIn(std::string_view name, std::string_view before, std::string_view af
   return failure == std::errc() && rest == digits.end() ? number : -1;
 }
 
+// Calls `use` with the level and the number of each episode that is finished.
+template <class Use>
+void ForEachFinished(const std::string& folder, const Use& use) {
+  for (const fs::directory_entry& level : fs::directory_iterator(folder)) {
+    const int number = NumberIn(level.path().filename().string(), "level", "");
+    if (number < 0 || !level.is_directory()) continue;
+    for (const fs::directory_entry& entry : fs::directory_iterator(level.path())) {
+      const int episode = NumberIn(entry.path().filename().string(), "episode_", ".json");
+      if (episode >= 0) use(number, episode);
+    }
+  }
+}
+
+bool HoldsEpisodes(const std::string& folder) {
+  bool found = false;
+  ForEachFinished(folder, [&](int, int) { found = true; });
+  return found;
+}
+
 // Writes what a file has to hold where there is none; otherwise, whether it holds that.
 bool IsNewOrHolds(const std::string& file, const std::string& text) {
   if (fs::exists(file)) return ReadFile(file) == text;
@@ -53,13 +73,16 @@ void OpenSweepFolder(const Task& task, const SweepOptions& options,
                      const std::map<int, std::string>& hashes) {
   const std::string file = options.folder + "/sweep.json";
   const std::string identity = FormatIdentity(task, options);
-  std::error_code failure;
+  if (!fs::exists(file) && HoldsEpisodes(options.folder)) {
+    throw Error(fmt::format(
+        "{}: is missing, so nobody knows of what the episodes beside it are; use another folder",
+        file));
+  }
+  RemoveAbandonedDraftsIn(options.folder);
   for (const auto& [level, hash] : hashes) {
     const std::string folder = fmt::format("{}/level{}", options.folder, level);
-    fs::create_directories(folder, failure);
-    if (failure) {
-      throw Error(fmt::format("{}: cannot be made: {}", options.folder, failure.message()));
-    }
+    MakeFolder(folder);
+    RemoveAbandonedDraftsIn(folder);
     if (IsNewOrHolds(folder + "/model.txt", hash + "\n")) continue;
     throw Error(
         fmt::format("{}: holds episodes of another version of the scene or of its object; "
@@ -85,15 +108,9 @@ StoredSweep ReadSweepFolder(const std::string& folder) {
   const JsonFields fields(sweep.identity, file);
   sweep.task = fields.Text("task");
   sweep.policy = fields.Text("policy");
-  for (const fs::directory_entry& level : fs::directory_iterator(folder)) {
-    const int number = NumberIn(level.path().filename().string(), "level", "");
-    if (number < 0 || !level.is_directory()) continue;
-    for (const fs::directory_entry& entry : fs::directory_iterator(level.path())) {
-      const int episode = NumberIn(entry.path().filename().string(), "episode_", ".json");
-      if (episode < 0) continue;
-      sweep.episodes.push_back(ReadEpisode(folder, number, episode).value());
-    }
-  }
+  ForEachFinished(folder, [&](int level, int episode) {
+    sweep.episodes.push_back(ReadEpisode(folder, level, episode).value());
+  });
   std::sort(sweep.episodes.begin(), sweep.episodes.end(), [](const auto& a, const auto& b) {
     return std::pair(a.episode, a.level) < std::pair(b.episode, b.level);
   });

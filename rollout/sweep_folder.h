@@ -12,8 +12,9 @@
 
 namespace physpring {
 
-// Makes the folder, or checks that what it holds is of the same sweep: task, compiled models,
-// policy, seed and noise. `hashes`: of each level's model, as it was compiled. Throws Error if not.
+// Fills a folder that is new, or checks that what it holds is of the same sweep: task, compiled
+// models, policy, seed and noise. `hashes`: of each level's model, as it was compiled. Throws Error
+// if not.
 void OpenSweepFolder(const Task& task, const SweepOptions& options,
                      const std::map<int, std::string>& hashes);
 

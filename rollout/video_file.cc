@@ -18,15 +18,6 @@
 namespace physpring {
 namespace {
 
-// A name in the same folder with the same ending, which ffmpeg goes by.
-std::string Unfinished(const std::string& path) {
-  if (path.find('%') != std::string::npos) return path;  // many files
-  const std::filesystem::path whole = path;
-  return (whole.parent_path() / fmt::format("{}.{}.unfinished{}", whole.stem().string(), getpid(),
-                                            whole.extension().string()))
-      .string();
-}
-
 // Starts a program that reads `input`; 0 or an error number.
 int Start(std::vector<std::string> words, int input, pid_t* process) {
   std::vector<char*> arguments;
@@ -44,7 +35,14 @@ int Start(std::vector<std::string> words, int input, pid_t* process) {
 }  // namespace
 
 VideoFile::VideoFile(std::string path, int width, int height, double rate)
-    : path_(std::move(path)), unfinished_(Unfinished(path_)) {
+    : path_(std::move(path)) {
+  if (path_.find('%') == std::string::npos) {  // else it is many files
+    RemoveAbandonedDrafts(path_);
+    draft_.emplace(path_, std::filesystem::path(path_).extension().string());
+    if (!draft_->is_open()) {
+      throw Error(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+    }
+  }
   // a socket, because writing to one whose reader died is an error and no signal
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
@@ -68,7 +66,7 @@ VideoFile::VideoFile(std::string path, int width, int height, double rate)
   };
   add({"-r", fmt::format("{}", rate), "-i", "pipe:0", "-threads", "1"});
   if (path_.ends_with(".mp4")) add({"-preset", "veryfast"});  // encoding must not outlast drawing
-  add({"-pix_fmt", pictures ? "rgb24" : "yuv420p", unfinished_});
+  add({"-pix_fmt", pictures ? "rgb24" : "yuv420p", draft_ ? draft_->name() : path_});
   const int failure = Start(command, ends[1], &process_);
   close(ends[1]);
   if (failure == 0) return;
@@ -79,9 +77,7 @@ VideoFile::VideoFile(std::string path, int width, int height, double rate)
 }
 
 VideoFile::~VideoFile() {
-  if (process_ < 0) return;
-  Stop();
-  unlink(unfinished_.c_str());
+  if (process_ >= 0) Stop();
 }
 
 void VideoFile::Add(const Image& image) {
@@ -106,8 +102,7 @@ void VideoFile::Stop() {
 void VideoFile::Finish() {
   Stop();
   const bool good = WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
-  if (good && (unfinished_ == path_ || rename(unfinished_.c_str(), path_.c_str()) == 0)) return;
-  unlink(unfinished_.c_str());
+  if (good && (!draft_ || (draft_->Sync() && draft_->Rename()))) return;
   throw Error(path_ + ": ffmpeg could not write it");
 }
 

@@ -5,10 +5,12 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rollout/policy.h"
+#include "twin/draft_file.h"
 
 namespace physpring {
 
@@ -32,7 +34,8 @@ class VideoFile {
  private:
   void Stop();
 
-  std::string path_, unfinished_;
+  std::string path_;
+  std::optional<DraftFile> draft_;  // what ffmpeg writes; none for many files
   int pipe_ = -1;
   pid_t process_ = -1;
   int status_ = 0;

@@ -6,54 +6,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
+#include "twin/descriptor.h"
+#include "twin/draft_file.h"
 #include "twin/error.h"
 
 namespace physpring {
 namespace {
 
-// An open file descriptor, closed when it goes out of scope.
-class Descriptor {
- public:
-  Descriptor(const std::string& path, int flags)
-      : fd_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  bool is_open() const { return fd_ >= 0; }
-  int get() const { return fd_; }
-
-  // Writes everything; false with errno set when that fails.
-  bool Write(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t written = write(fd_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-  }
-
-  // Some file systems report a full disk only here.
-  bool Close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return close(fd) == 0;
-  }
-
- private:
-  int fd_;
-};
-
 [[noreturn]] void FailToWrite(const std::string& path, int error) {
   throw Error(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
+}
+
+[[noreturn]] void FailAsNoFile(const std::string& path) {
+  throw Error(fmt::format(
+      "{}: cannot be read: is a pipe or a device; copy what it holds to a file first", path));
 }
 
 // Where the links lead, so that a link stays a link and /dev/stdout stays a device.
@@ -69,21 +39,9 @@ bool IsDevice(const std::string& path) {
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-// A name beside `path` that no other writer, of this process or another, uses.
-std::string TemporaryName(const std::string& path) {
-  static std::atomic<unsigned> count{0};
-  return fmt::format("{}.{}-{}.tmp", path, getpid(), count++);
-}
-
 void WriteDirectly(const std::string& path, std::string_view bytes) {
   Descriptor file(path, O_WRONLY);
   if (!file.is_open() || !file.Write(bytes) || !file.Close()) FailToWrite(path, errno);
-}
-
-// Writes and syncs a new file; false with errno set when that fails.
-bool WriteNewFile(const std::string& path, std::string_view bytes) {
-  Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
-  return file.is_open() && file.Write(bytes) && fsync(file.get()) == 0 && file.Close();
 }
 
 }  // namespace
@@ -92,11 +50,12 @@ std::string ReadFile(const std::string& path, std::size_t limit) {
   const auto fail = [&] {
     throw Error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
   };
-  const Descriptor file(path, O_RDONLY);
+  const Descriptor file(path, O_RDONLY | O_NONBLOCK);  // a pipe without a writer would wait
   if (!file.is_open()) fail();
 
   struct stat status {};
   if (fstat(file.get(), &status) != 0) fail();
+  if (!S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) FailAsNoFile(path);
   std::string bytes;
   bytes.reserve(std::min(limit, static_cast<std::size_t>(std::max<off_t>(status.st_size, 0))));
 
@@ -125,20 +84,29 @@ void ExpectFileWritable(const std::string& path) {
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
     throw Error(fmt::format("{}: cannot be written: its folder is missing", path));
   }
-  const std::string temporary = TemporaryName(target);
-  if (!WriteNewFile(temporary, "")) FailToWrite(path, errno);
-  unlink(temporary.c_str());
+  RemoveAbandonedDrafts(target);
+  DraftFile probe(target);
+  if (!probe.is_open() || !probe.Sync() || !probe.Remove()) FailToWrite(path, errno);
+}
+
+void ExpectRegularFile(const std::string& path) {
+  if (IsDevice(path)) FailAsNoFile(path);
+}
+
+void MakeFolder(const std::string& path) {
+  std::error_code failure;
+  std::filesystem::create_directories(path, failure);
+  if (failure) throw Error(fmt::format("{}: cannot be made: {}", path, failure.message()));
 }
 
 void WriteFileAtomically(const std::string& path, std::string_view bytes) {
   const std::string target = FollowLinks(path);
   if (IsDevice(target)) return WriteDirectly(path, bytes);
 
-  const std::string temporary = TemporaryName(target);
-  if (!WriteNewFile(temporary, bytes) || rename(temporary.c_str(), target.c_str()) != 0) {
-    const int error = errno;
-    unlink(temporary.c_str());
-    FailToWrite(path, error);
+  DraftFile draft(target);
+  // after the sync nothing is left that closing could say
+  if (!draft.is_open() || !draft.Write(bytes) || !draft.Sync() || !draft.Rename()) {
+    FailToWrite(path, errno);
   }
   // The rename itself reaches the disk with its folder. Where a file system cannot do that, the
   // file is still complete: after a power cut it is the old or the new one.

@@ -10,12 +10,21 @@
 namespace physpring {
 
 // The bytes of a file. Throws Error beginning with the path when it is missing, not readable, a
-// folder, or larger than `limit` bytes.
+// folder, a pipe or a device (which may never end), or larger than `limit` bytes.
 std::string ReadFile(const std::string& path, std::size_t limit = std::size_t{1} << 32);
 
+// Throws Error beginning with the path if a pipe or a device is there: for files that libraries
+// read.
+void ExpectRegularFile(const std::string& path);
+
 // Throws Error beginning with the path if WriteFileAtomically could not write there now: for
-// finding out before long work. Leaves nothing behind.
+// finding out before long work. Leaves nothing behind, and removes what killed programs left of
+// their temporary files for it (draft_file.h).
 void ExpectFileWritable(const std::string& path);
+
+// Makes the folder, and those that it is in, where they are missing. Throws Error beginning with
+// the path if that fails.
+void MakeFolder(const std::string& path);
 
 // Writes a temporary file in the same folder, syncs it to the disk and renames it. Throws Error
 // beginning with the path when that fails (folder missing or not writable, disk full); then a file

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "twin/stop_request.h"
+
 namespace physpring {
 
 template <class Real>
@@ -107,6 +109,7 @@ void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* w
 template <class Real>
 void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
                                    Workspace* workspace) const {
+  StopIfRequested();
   StartFrame(input, *state, workspace);
   if (workspace->impacts.empty()) workspace->impacts.resize(1);
   for (int i = 0; i < options_.substeps; ++i) {
@@ -128,6 +131,7 @@ void Simulator<Real>::AdvanceFrameAdjoint(const State& start, const FrameInput& 
 template <class Real>
 void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
                                   Workspace* workspace) const {
+  StopIfRequested();
   StartFrame(input, *state, workspace);
   workspace->states.resize(options_.substeps + 1, State(state->size()));
   workspace->impacts.resize(options_.substeps);
@@ -144,6 +148,7 @@ void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
 template <class Real>
 void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gradient,
                                            Workspace* workspace) const {
+  StopIfRequested();
   LevelBuffers<Real>& buffers = workspace->buffers;
   step_.ClearGradient(&buffers);
   for (int i = options_.substeps - 1; i >= 0; --i) SubstepAdjoint(i, state_bar, workspace);

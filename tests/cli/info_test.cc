@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `physpring info` as a user sees it.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -99,6 +100,12 @@ TEST_F(Info, FailsInOneLineOnOtherFiles) {
   const double one = 1;
   WriteNpz({{"x", NpzArray::Doubles({}, &one)}}, path);
   EXPECT_TRUE(FailsWith(RunProgram({"info", path}), "neither"));
+}
+
+TEST_F(Info, DoesNotWaitForAPipe) {
+  const std::string path = folder_.File("pipe.npz");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_TRUE(FailsWith(RunProgram({"info", path}), path + ": cannot be read: is a pipe"));
 }
 
 TEST_F(Info, EndsWith2OnBadUsage) { EXPECT_EQ(RunProgram({"info"}).status, 2); }

@@ -72,6 +72,30 @@ TEST(Folder, FailsWithoutATrace) {
   EXPECT_EQ(folder.count(), 0);
 }
 
+// The last of three files cannot take its place, because a folder has it.
+TEST(Folder, KeepsAllOldFilesWhenOneCannotBeReplaced) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("b");
+  WriteFolder(path, {{"w", "old"}}, false);
+  std::filesystem::create_directory(path + "/z");
+  const std::string error = MessageOf(path, {{"v", "new"}, {"w", "new"}, {"z", "new"}}, true);
+  EXPECT_EQ(error, path + ": cannot be written: Is a directory");
+  EXPECT_EQ(ReadFile(path + "/w"), "old");
+  EXPECT_FALSE(std::filesystem::exists(path + "/v"));
+  EXPECT_EQ(folder.count(), 1);
+}
+
+TEST(Folder, RemovesWhatAKilledExportLeft) {
+  const TemporaryFolder folder;
+  for (const char* name : {".b.export-a1B2c3", ".c.export-a1B2c3", ".b.export-long-name"}) {
+    std::filesystem::create_directory(folder.File(name));
+    std::ofstream(folder.File(name) + "/x") << "half";
+  }
+  WriteFolder(folder.File("b"), {{"x", "one"}}, false);
+  EXPECT_FALSE(std::filesystem::exists(folder.File(".b.export-a1B2c3")));
+  EXPECT_EQ(folder.count(), 3);
+}
+
 TEST(Folder, IsNotAFile) {
   const TemporaryFolder folder;
   std::ofstream(folder.File("b")) << "text";

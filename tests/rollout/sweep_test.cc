@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "rollout/plugin_library.h"
 #include "rollout/sweep_folder.h"
+#include "tests/support/file_damage.h"
 #include "tests/support/small_task.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
@@ -107,6 +109,85 @@ TEST_F(SweepTest, ReplayOfEpisodesGivesTheSameBytes) {
   first.erase("/sweep.json");  // names the policy
   again.erase("/sweep.json");
   EXPECT_EQ(first, again);
+}
+
+// Each is put right by the next run, which says so, and no other episode is run again.
+TEST_F(SweepTest, RunsDamagedEpisodesAgain) {
+  SweepOptions options = Options("random");
+  options.folder = Folder("sweep");
+  Run(options);
+  const auto whole = Bytes("sweep");
+  const std::string states = EpisodePath(options.folder, 0, 2) + ".npz";
+  const std::string verdict = EpisodePath(options.folder, 0, 2) + ".json";
+  std::string flipped = ReadFile(states);
+  flipped[flipped.size() / 2] ^= 1;
+  const std::string other = ReadFile(EpisodePath(options.folder, 0, 1) + ".npz");
+  const std::map<std::string, std::function<void()>> damages = {
+      {states + ": cannot be read: No such file", [&] { fs::remove(states); }},
+      {states + ": is damaged", [&] { WriteFileAtomically(states, flipped); }},
+      {states + ": is damaged: its hash", [&] { WriteFileAtomically(states, other); }},
+      {verdict + ": ", [&] { WriteFileAtomically(verdict, "{\"episode\": 2,"); }},
+  };
+  for (const auto& [warning, damage] : damages) {
+    damage();
+    EXPECT_THAT(
+        ErrorOf(warning.substr(0, warning.find(':')), [&] { ReadSweepFolder(options.folder); }),
+        HasSubstr(warning));  // so it cannot be merged
+    const Sweep again = Run(options);
+    EXPECT_EQ(again.skipped, 3);
+    ASSERT_EQ(again.warnings.size(), 1u);
+    EXPECT_THAT(again.warnings[0], HasSubstr(warning));
+    EXPECT_THAT(again.warnings[0], HasSubstr("the episode is run again"));
+    EXPECT_EQ(Bytes("sweep"), whole);
+  }
+}
+
+TEST_F(SweepTest, MissesNoTimes) {
+  SweepOptions options = Options("random");
+  options.folder = Folder("sweep");
+  Run(options);
+  fs::remove(EpisodePath(options.folder, 0, 1) + ".seconds.json");
+  WriteFileAtomically(EpisodePath(options.folder, 0, 2) + ".seconds.json", "");
+  const Sweep again = Run(options);
+  EXPECT_EQ(again.skipped, 4);
+  EXPECT_FALSE(again.episodes[1].seconds);
+  EXPECT_FALSE(again.episodes[2].seconds);
+  EXPECT_TRUE(again.episodes[3].seconds);
+  EXPECT_EQ(ReadSweepFolder(options.folder).episodes.size(), 4u);
+}
+
+// Of a version that did not know the hash.
+TEST_F(SweepTest, ReadsVerdictsWithoutAHash) {
+  SweepOptions options = Options("random");
+  options.folder = Folder("sweep");
+  Run(options);
+  const std::string path = EpisodePath(options.folder, 0, 0);
+  std::string verdict = ReadFile(path + ".json");
+  const std::size_t hash = verdict.find(",\n \"npz_hash\"");
+  ASSERT_NE(hash, std::string::npos);
+  WriteFileAtomically(path + ".json", verdict.substr(0, hash) + "\n}\n");
+  EXPECT_EQ(Run(options).skipped, 4);
+  fs::resize_file(path + ".npz", 100);
+  EXPECT_EQ(Run(options).skipped, 3);
+}
+
+TEST_F(SweepTest, NeedsToKnowWhatTheEpisodesAreOf) {
+  SweepOptions options = Options("random");
+  options.folder = Folder("sweep");
+  Run(options);
+  fs::remove(options.folder + "/sweep.json");
+  EXPECT_THAT(ErrorOf(options.folder + "/sweep.json", [&] { Run(options); }),
+              HasSubstr("is missing"));
+}
+
+TEST_F(SweepTest, RemovesWhatAKilledOneLeft) {
+  SweepOptions options = Options("random");
+  options.folder = Folder("sweep");
+  Run(options);
+  const auto whole = Bytes("sweep");
+  WriteFileAtomically(EpisodePath(options.folder, 0, 1) + ".npz.1-2.tmp", "half");
+  Run(options);
+  EXPECT_EQ(Bytes("sweep"), whole);
 }
 
 TEST_F(SweepTest, AnotherSeedStartsElsewhere) {

@@ -114,6 +114,14 @@ TEST_F(AtomicFile, WritesToAPipeDirectly) {
   EXPECT_TRUE(fs::is_fifo(path_));
 }
 
+TEST_F(AtomicFile, IsNotReadFromAPipe) {
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  const std::string error =
+      path_ + ": cannot be read: is a pipe or a device; copy what it holds to a file first";
+  EXPECT_EQ(ErrorOf(path_, [this] { ReadFile(path_); }), error);
+  EXPECT_EQ(ErrorOf(path_, [this] { ExpectRegularFile(path_); }), error);
+}
+
 TEST_F(AtomicFile, ReadsNoMoreThanTheLimit) {
   WriteFileAtomically(path_, "12345");
   EXPECT_EQ(ReadFile(path_, 5), "12345");

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "twin/stop_request.h"
+
 namespace physpring {
 
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
@@ -15,6 +17,7 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   const auto run = [&] {
     for (int i = next++; i < count; i = next++) {
       try {
+        StopIfRequested();
         work(i);
       } catch (...) {
         errors[i] = std::current_exception();

@@ -8,7 +8,8 @@
 namespace physpring {
 
 // Calls work(0) ... work(count - 1), each once, on up to `threads` threads. The first exception
-// thrown by a call (lowest index) is thrown again when all have ended. Results that go to places of
+// thrown by a call (lowest index) is thrown again when all have ended; a wish to
+// stop (twin/stop_request.h) is one. Results that go to places of
 // their own do not depend on the number of threads.
 void ParallelFor(int count, int threads, const std::function<void(int)>& work);
 
