@@ -10,7 +10,7 @@ import subprocess
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 # What is different each time, and so only looked at for its form.
-TIMES = re.compile(r'\.seconds\.json$|eval\.json$|report_of_rollout\.json$|\.html$')
+TIMES = re.compile(r'\.seconds\.json$|eval\.json$|report_of_rollout\.json$|eval\.html$')
 BOX = ''.join(f'v {x} {y} {z}\n' for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)) + '''\
 f 1 2 4\nf 1 4 3\nf 5 7 8\nf 5 8 6\nf 1 5 6\nf 1 6 2\nf 3 4 8\nf 3 8 7\nf 1 3 7\nf 1 7 5\nf 2 6 8
 f 2 8 4
