@@ -15,8 +15,8 @@ std::string HintIfLong(const TrainOptions& options, double seconds, double secon
   if (full && options.neighbours.size() != 1) shorter += "--neighbours 20, ";
   if (full && !options.controller_velocity) shorter += "--controller-velocity off, ";
   if (full && !options.cone) shorter += "--cone elliptic, ";
-  if (full) shorter += "--method two-stage, ";
-  if (options.epochs == 0) shorter += "--epochs N, ";
+  if (!full && options.epochs == 0) shorter += "a small --epochs, ";
+  if (!options.single_precision) shorter += "--precision float, ";
   if (options.levels > 1) shorter += "fewer --levels, ";
   return fmt::format(
       "note: {} left; each of these makes it shorter: {}fewer points, fewer frames (Ctrl-C leaves "

@@ -6,6 +6,7 @@
 
 #include "rollout/mujoco_log.h"
 #include "rollout/scene_spec.h"
+#include "twin/atomic_file.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -22,6 +23,7 @@ ModelPtr Compile(mjSpec* spec, const std::string& where, std::vector<std::string
 }  // namespace
 
 ModelPtr LoadScene(const std::string& path, std::vector<std::string>* warnings) {
+  ExpectRegularFile(path);
   std::array<char, 1024> message{};
   mjModel* model = nullptr;
   CatchMujoco(

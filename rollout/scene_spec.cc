@@ -4,6 +4,7 @@
 #include <array>
 
 #include "rollout/mujoco_log.h"
+#include "twin/atomic_file.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -23,6 +24,7 @@ SpecPtr ParseWith(const std::string& where, std::vector<std::string>* warnings, 
 }  // namespace
 
 SpecPtr ParseSpec(const std::string& path, std::vector<std::string>* warnings) {
+  ExpectRegularFile(path);
   return ParseWith(path, warnings, [&](char* message, int size) {
     return mj_parseXML(path.c_str(), nullptr, message, size);
   });

@@ -105,7 +105,9 @@ TEST_F(Info, FailsInOneLineOnOtherFiles) {
 TEST_F(Info, DoesNotWaitForAPipe) {
   const std::string path = folder_.File("pipe.npz");
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_TRUE(FailsWith(RunProgram({"info", path}), path + ": cannot be read: is a pipe"));
+  const std::string refusal = path + ": cannot be read: is a pipe";
+  EXPECT_TRUE(FailsWith(RunProgram({"info", path}), refusal));
+  EXPECT_TRUE(FailsWith(RunProgram({"record", path, "-o", folder_.File("new.npz")}), refusal));
 }
 
 TEST_F(Info, EndsWith2OnBadUsage) { EXPECT_EQ(RunProgram({"info"}).status, 2); }

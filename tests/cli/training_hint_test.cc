@@ -21,13 +21,14 @@ TEST(TrainingHint, WaitsUntilThePaceIsKnown) {
 TEST(TrainingHint, NamesOptionsThatAreNotGiven) {
   EXPECT_EQ(HintIfLong({}, 60, 6 * kHours),
             "note: 6 h 0 min left; each of these makes it shorter: --neighbours 20, "
-            "--controller-velocity off, --cone elliptic, --method two-stage, --epochs N, fewer "
+            "--controller-velocity off, --cone elliptic, --precision float, fewer "
             "points, fewer frames (Ctrl-C leaves a checkpoint)");
   TrainOptions options;
   options.method = TrainOptions::Method::kTwoStage;
-  options.epochs = 5;
+  options.single_precision = true;
   EXPECT_EQ(HintIfLong(options, 60, 6 * kHours),
-            "note: 6 h 0 min left; each of these makes it shorter: fewer points, fewer frames "
+            "note: 6 h 0 min left; each of these makes it shorter: a small --epochs, fewer points, "
+            "fewer frames "
             "(Ctrl-C leaves a checkpoint)");
 }
 

@@ -47,6 +47,18 @@ TEST_F(Dataset, StandsForItsRecordingsOfARole) {
   EXPECT_TRUE(heldout[0].heldout);
 }
 
+// One recording may belong to several data sets.
+TEST_F(Dataset, TakesRecordingsOfOtherFolders) {
+  const std::string set = folder_.File("set"), absolute = folder_.File("a.npz");
+  std::filesystem::create_directory(set);
+  Overwrite(set + "/dataset.json", R"({"recordings": [{"file": "../b.npz", "role": "fit"},
+      {"file": ")" + absolute + R"(", "role": "fit"}]})");
+  const std::vector<RecordingEntry> fit = ListRecordings({set}, Role::kFit);
+  ASSERT_EQ(fit.size(), 2u);
+  EXPECT_TRUE(std::filesystem::equivalent(fit[0].path, folder_.File("b.npz")));
+  EXPECT_EQ(fit[1].path, absolute);
+}
+
 TEST_F(Dataset, MayBeNamedByItsFile) {
   const std::vector<RecordingEntry> heldout = ListRecordings({json_}, Role::kHeldout);
   ASSERT_EQ(heldout.size(), 1u);
