@@ -59,7 +59,7 @@ void PrintRemarks(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
   }
-  for (const std::string& note : JoinAlike(notes)) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : JoinAlike(notes)) Tell("note: {}\n", note);
 }
 
 }  // namespace physpring
