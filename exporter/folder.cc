@@ -28,7 +28,7 @@ constexpr std::string_view kRandom = "XXXXXX";
 
 // Begins the names of the drafts of a folder, which are beside it.
 std::string DraftPrefix(const fs::path& target) {
-  return "." + target.filename().string() + ".export-";
+  return fmt::format(".{}.export-", target.filename().string());
 }
 
 // A new folder beside the one to be written; removed again unless it was renamed. It is locked, so
