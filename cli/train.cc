@@ -25,6 +25,7 @@
 #include "cli/train_options.h"
 #include "cli/training.h"
 #include "cli/warnings.h"
+#include "trainer/bodies/factors.h"
 #include "trainer/data/fit_data.h"
 #include "trainer/reduction/registry.h"
 #include "twin/dataset.h"
@@ -148,6 +149,17 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
   fmt::print("\n");
 }
 
+// Of many recordings some are enough, so that training takes minutes.
+void TellOfUnused(const FitData& data, const TrainOptions& options) {
+  const int count = static_cast<int>(data.recordings.size());
+  if (options.method != TrainOptions::Method::kFull || count <= kMostSpringRecordings) return;
+  Tell(
+      "note: {} recordings: the body is chosen by fewer, and single springs are fitted to {}, "
+      "evenly "
+      "spread over them\n",
+      count, kMostSpringRecordings);
+}
+
 // Before the work.
 void ExpectWritable(const TrainArguments& arguments, const std::vector<RecordingEntry>& entries) {
   std::vector<std::string> inputs;
@@ -172,6 +184,7 @@ void Run(const TrainArguments& arguments) {
   std::string log_failure;
   OpenLog(arguments.log, arguments.run.resume, &log_failure);
   PrintRemarks(data.recordings);
+  TellOfUnused(data, options);
   for (const std::string& warning : JoinAlike(WarningsOf(data.recordings))) {
     spdlog::info("warning: {}", warning);
   }

@@ -73,7 +73,7 @@ std::string FormatHead(const Columns& columns) {
   }
   names += errors;
   if (columns.published) {
-    parts += fmt::format(" | {:<{}} | published", "prediction", width);
+    parts += fmt::format(" | {:<{}} |   DEFORM", "prediction", width);
     names += " |       L1";
   } else {
     parts += " | prediction";

@@ -56,7 +56,7 @@ std::string FormatTableHead(bool fit, bool lifted, bool published) {
   names += errors;
   if (published) {
     parts += "<th class=\"part first\"><span>cables, mm</span></th>";
-    names += "<th class=\"first\">published L1</th>";
+    names += "<th class=\"first\">DEFORM L1</th>";
   }
   return "<thead>" + parts + "</tr>" + names + "</tr></thead>\n";
 }
