@@ -39,13 +39,13 @@ TEST_F(Train, NeedsPointsThatAreSeenAfterTheFirstFrame) {
 }
 
 TEST_F(Train, NeverOverwritesWhatIsNoTwin) {
-  const std::string bytes = ReadFile(rope_);
+  const std::string bytes = ReadFile(other_);
   for (const char* flag : {"--force", "--resume"}) {
-    EXPECT_TRUE(FailsWith(RunProgram({"train", rope_, "-o", rope_, flag}),
-                          rope_ + ": is there and no twin"))
+    EXPECT_TRUE(FailsWith(RunProgram({"train", rope_, "-o", other_, flag}),
+                          other_ + ": is there and no twin"))
         << flag;
   }
-  EXPECT_TRUE(ReadFile(rope_) == bytes);
+  EXPECT_TRUE(ReadFile(other_) == bytes);
 }
 
 TEST_F(Train, ResumesOnlyWhatWasTrainedTheSameWay) {
