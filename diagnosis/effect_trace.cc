@@ -155,8 +155,11 @@ std::vector<EffectTrace> TraceEffects(const Fitting& fitting, const Descent& fit
     return p.effect != q.effect ? p.effect < q.effect : p.score > q.score;
   });
   std::vector<std::size_t> kept(effects.size(), 0);
-  std::erase_if(
-      jobs, [&](const Job& job) { return job.score == kNone || kept[job.effect]++ >= kStarts; });
+  // what begins as no effect at all responds with nothing, and may be right all the same
+  std::erase_if(jobs, [&](const Job& job) {
+    if (job.score == kNone) return true;
+    return !job.start.isZero(0) && kept[job.effect]++ >= kStarts;
+  });
   fitting.journal().Stage(stage.Part(0.4, 1), static_cast<int>(jobs.size()), "tracing the effects");
   for_each_job("score", [&](const Effect& effect, const Eigen::VectorXd& start) {
     return tracer.Score(effect, start);

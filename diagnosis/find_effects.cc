@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diagnosis/find_effects.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -195,13 +197,34 @@ Attempt FitSprings(const Inquiry& inquiry, Attempt attempt, int round, const Wor
   return attempt;
 }
 
+// The parameters of the effect that was found that are at a bound, "KEY (value)", in words. What
+// ends there stands for something else. Free forms have some there; they are judged as a whole.
+std::string AtBounds(const EffectValues& effect) {
+  if (IsFreeForm(effect.values.size())) return "";
+  std::string keys;
+  Eigen::Index i = 0;
+  for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
+    for (int k = 0; k < parameter.count; ++k, ++i) {
+      if (!IsAtBound(parameter, effect.values[i])) continue;
+      keys +=
+          fmt::format("{}{} ({:.3g})", keys.empty() ? "" : ", ", parameter.key, effect.values[i]);
+    }
+  }
+  return keys;
+}
+
 // Why the effect that was found is not accepted, "NAME: ..."; empty if it is.
 std::string Refusal(const Inquiry& inquiry, const Attempt& attempt) {
   const PairedErrors common = inquiry.Compare(attempt.beside.common, attempt.chosen());
   const PairedErrors springs = inquiry.Compare(attempt.beside.accepted, attempt.with_springs);
   const Threshold threshold = inquiry.ThresholdFor(attempt.search.verdicts.size());
-  if (IsAccepted(common, springs, NewParametersOf(attempt.chosen()), threshold)) return "";
-  return NameOf(attempt.chosen()) + ": " + WhyNotAccepted(common, springs, threshold);
+  const std::string name = NameOf(attempt.chosen());
+  if (!IsAccepted(common, springs, NewParametersOf(attempt.chosen()), threshold)) {
+    return name + ": " + WhyNotAccepted(common, springs, threshold);
+  }
+  const std::string bounds = AtBounds(attempt.chosen().system.effects.back());
+  if (bounds.empty()) return "";
+  return fmt::format("{}: ends at the bound of {}, so it stands for something else", name, bounds);
 }
 
 // The best other effect of the search, if it is near the one that is accepted.

@@ -26,6 +26,8 @@ constexpr std::array<double, 3> kResidualGains = {0.35, 0.6, 0.85};
 constexpr int kLinearisations = 3, kKickSteps = 12;
 // The mean square that is small enough, times the variance of the measurements.
 constexpr double kEnough = 1.05;
+// The search has converged if it leaves less than so many deviations, or less than this part.
+constexpr double kNearNoise = 3, kExplainedPart = 0.5;
 // A linearisation that leaves more than this part of the square is the last one.
 constexpr double kGainsEnough = 0.999;
 
@@ -169,6 +171,7 @@ std::optional<ResidualForce> FindUnder(double gain, bool unless_useless,
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.size());
   auto r = problem.Linearise(x);
   if (!r) return {};
+  const double first = r->squaredNorm();
   const double target =
       kEnough * options.deviation * options.deviation * static_cast<double>(problem.rows());
   int steps = 0;
@@ -194,6 +197,8 @@ std::optional<ResidualForce> FindUnder(double gain, bool unless_useless,
   const Eigen::VectorXd mass = system.mass.head(nodes);
   result.position = problem.rollout().positions();
   result.left = std::sqrt(r->squaredNorm() / static_cast<double>(r->size()));
+  result.converged = result.left <= kNearNoise * options.deviation ||
+                     r->squaredNorm() <= kExplainedPart * kExplainedPart * first;
   for (const Points& kick : problem.Unpack(x)) {
     result.force.emplace_back(fps * (kick.array().rowwise() * mass.transpose().array()).matrix());
   }

@@ -28,6 +28,9 @@ struct ResidualForce {
   // measurements alone would make.
   Eigen::VectorXd noise;
   double left = 0;  // root mean square of a measured coordinate's residual with these forces, m
+  // Whether they explain the residuals: what is left is near the noise, or less than half of what
+  // was there. Otherwise they are no finding.
+  bool converged = true;
 };
 
 struct ResidualForceOptions {

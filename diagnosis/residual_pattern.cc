@@ -98,6 +98,7 @@ ResidualPattern PatternOf(const ResidualForce& residual, const SpringMassSystem&
   const auto nodes = static_cast<Eigen::Index>(system.node_count());
   const auto steps = static_cast<Eigen::Index>(residual.force.size());
   pattern.left = residual.left;
+  pattern.converged = residual.converged;
   pattern.noise = std::sqrt(3 * residual.noise.squaredNorm() / static_cast<double>(nodes));
   pattern.node = system.position.leftCols(nodes);
   pattern.mean_force = Points::Zero(3, nodes);

@@ -20,6 +20,7 @@ struct BinnedMeans {
 struct ResidualPattern {
   double root_mean_square = 0;  // the root mean square force on a node, N
   double noise = 0;             // the same for the forces that noise alone would make, N
+  bool converged = true;        // ResidualForce; else nothing but `left` and `noise` is to be told
   double left = 0;    // root mean square of a measured coordinate's residual with the forces, m
   Points node;        // the nodes' places in the reference configuration, 3 x nodes, m
   Points mean_force;  // the mean over time on each node, N

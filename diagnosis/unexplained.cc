@@ -32,7 +32,8 @@ Window HalfOfSquares(const std::vector<double>& values) {
 Unexplained FindUnexplained(const ResidualPattern& missing, double track, double fps) {
   Unexplained unexplained;
   unexplained.track = track;
-  unexplained.located = missing.root_mean_square > 0;
+  unexplained.converged = missing.converged;
+  unexplained.located = missing.converged && missing.root_mean_square > 0;
   if (!unexplained.located) return unexplained;
   missing.node_force.maxCoeff(&unexplained.particle);
   unexplained.position = missing.node.col(unexplained.particle);

@@ -10,9 +10,10 @@
 namespace physpring {
 
 struct Unexplained {
-  double track = 0;      // error left above the noise floor, m
-  bool located = false;  // whether a force is missing on what was fitted; else no more is known
-  int particle = 0;      // where the missing force is largest over time ...
+  double track = 0;       // error left above the noise floor, m
+  bool converged = true;  // whether the search for the missing force did; else no more is known
+  bool located = false;   // whether a force is missing on what was fitted; else no more is known
+  int particle = 0;       // where the missing force is largest over time ...
   // ... and its place in the reference configuration, m
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   double first_time = 0, last_time = 0;  // the shortest time that has half of its square, s

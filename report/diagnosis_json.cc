@@ -63,6 +63,7 @@ Json UnexplainedJson(const Diagnosis& diagnosis) {
   const Unexplained& left = *diagnosis.unexplained;
   const auto located = [&](const Json& value) { return left.located ? value : Json(nullptr); };
   return {{"track", left.track},
+          {"converged", left.converged},
           {"particle", located(left.particle)},
           {"position", located(Direction(left.position))},
           {"from_s", located(left.first_time)},
@@ -89,7 +90,11 @@ Json BinnedJson(const BinnedMeans& means) {
 }
 
 Json ResidualJson(const ResidualPattern& pattern) {
-  return {{"rms_n", pattern.root_mean_square},
+  if (!pattern.converged) {
+    return {{"converged", false}, {"noise_n", pattern.noise}, {"left_m", pattern.left}};
+  }
+  return {{"converged", true},
+          {"rms_n", pattern.root_mean_square},
           {"noise_n", pattern.noise},
           {"left_m", pattern.left},
           {"constant", pattern.constant},

@@ -87,6 +87,7 @@ std::string DescribeVerdict(const Diagnosis& diagnosis) {
   if (!diagnosis.unexplained) return verdict;
   const Unexplained& left = *diagnosis.unexplained;
   verdict += fmt::format("; {} above the noise are unexplained", InMillimetres(left.track));
+  if (!left.converged) return verdict + ", and the search for the force that is missing failed";
   if (!left.located) return verdict + ", and no force on what was fitted would explain them";
   return verdict + fmt::format(
                        ": a force, largest on particle {}, mostly from {:.2f} to {:.2f} s, then "
@@ -98,6 +99,10 @@ std::string DescribeVerdict(const Diagnosis& diagnosis) {
 
 std::string DescribeResidual(const Diagnosis& diagnosis) {
   const auto force = [](const ResidualPattern& pattern, const char* when) {
+    if (!pattern.converged) {
+      return fmt::format("not found{} (the search did not converge, {} are left)", when,
+                         InMillimetres(pattern.left));
+    }
     return pattern.root_mean_square > 0
                ? fmt::format("{:.3g} mN{} (noise makes {:.2g})", 1e3 * pattern.root_mean_square,
                              when, 1e3 * pattern.noise)
@@ -107,7 +112,7 @@ std::string DescribeResidual(const Diagnosis& diagnosis) {
   const bool changed = !diagnosis.effects.empty();
   std::string text = "missing force on a node: " + force(before, changed ? " before" : "");
   if (changed) text += ", " + force(diagnosis.residual_after, " after");
-  if (before.root_mean_square == 0) return text;
+  if (before.root_mean_square == 0 || !before.converged) return text;
   return text + fmt::format(
                     "; {}{:.0f} % of its square one acceleration, cosine with the velocity {:.2f}, "
                     "with the stretch {:.2f}",

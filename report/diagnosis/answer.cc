@@ -53,6 +53,11 @@ std::vector<std::string> SpacedNames(const std::vector<std::string>& names) {
 std::string DescribeLeft(const Diagnosis& diagnosis) {
   const Unexplained& left = *diagnosis.unexplained;
   std::string text = fmt::format("{} mm above the noise stay unexplained", InMm(left.track));
+  if (!left.converged) {
+    return text +
+           ". The search for the force that is missing did not converge: look at units, "
+           "gravity, ground and times first.";
+  }
   if (!left.located) return text + ". No force on what was fitted would explain them.";
   const std::string place = DescribePlace(diagnosis.twin.levels[0].system, left.position);
   return text + fmt::format(

@@ -13,14 +13,6 @@
 namespace physpring {
 namespace {
 
-// At a bound that is no "not at all".
-bool IsAtBound(const EffectParameter& parameter, double value) {
-  const double near = parameter.spacing == EffectParameter::Spacing::kLogarithmic
-                          ? 0.02 * std::abs(value)
-                          : 1e-3 * (parameter.high - parameter.low);
-  return value > parameter.high - near || (parameter.low != 0 && value < parameter.low + near);
-}
-
 ValueRange RangeOf(const EffectParameter& parameter, double value,
                    const std::optional<ValueCertainty>& certainty) {
   ValueRange range{

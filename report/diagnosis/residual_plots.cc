@@ -114,6 +114,9 @@ std::string ForceArrows(const Diagnosis& diagnosis, const View& view) {
 }  // namespace
 
 std::string FormatResidualPlots(const Diagnosis& diagnosis, double fps, const View& view) {
+  if (!diagnosis.residual_before.converged || !diagnosis.residual_after.converged) {
+    return "<p>The search for the missing forces did not converge, so none are shown.</p>\n";
+  }
   const ForcePlots plots(diagnosis, fps);
   const double noise = diagnosis.residual_before.noise;
   return "<div class=\"plots\">\n" + ForceArrows(diagnosis, view) +

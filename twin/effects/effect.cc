@@ -42,6 +42,13 @@ EffectPicture Effect::Picture(const Eigen::VectorXd&, const Setting&) const {
   return picture;
 }
 
+bool IsAtBound(const EffectParameter& parameter, double value) {
+  const double near = parameter.spacing == EffectParameter::Spacing::kLogarithmic
+                          ? 0.02 * std::abs(value)
+                          : 1e-3 * (parameter.high - parameter.low);
+  return value > parameter.high - near || (parameter.low != 0 && value < parameter.low + near);
+}
+
 int Effect::value_count() const {
   int count = 0;
   for (const EffectParameter& parameter : parameters()) count += parameter.count;

@@ -38,6 +38,9 @@ struct EffectParameter {
   bool is_moment = false;  // in a rod a search moves it by the moments that bend that rod
 };
 
+// Whether a value is at a bound of its parameter that is no "not at all": the truth may lie beyond.
+bool IsAtBound(const EffectParameter& parameter, double value);
+
 // What an effect may change before a simulation.
 struct Setting {
   SpringMassSystem system;

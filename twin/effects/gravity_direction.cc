@@ -7,12 +7,16 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <utility>
 
 #include "twin/effects/effect.h"
 
 namespace physpring {
 namespace {
+
+constexpr double kMostTurned = 3.3;  // rad, more than half a turn
 
 Eigen::Vector3d RotationVector(const Eigen::Vector3d& g, const Eigen::VectorXd& values) {
   Eigen::Index along = 0;
@@ -53,10 +57,18 @@ class GravityDirection : public Effect {
     return picture;
   }
   std::vector<EffectParameter> parameters() const override {
-    return {{"tilt_x_rad", -1.5, 1.5, 0.1}, {"tilt_y_rad", -1.5, 1.5, 0.1}};
+    return {{"tilt_x_rad", -kMostTurned, kMostTurned, 0.1},
+            {"tilt_y_rad", -kMostTurned, kMostTurned, 0.1}};
   }
+  // As declared; another axis of the frame points up; or the same one points down.
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    return {Eigen::VectorXd::Zero(2)};
+    const double quarter = std::numbers::pi / 2;
+    std::vector<Eigen::VectorXd> starts{Eigen::VectorXd::Zero(2)};
+    for (const auto& [x, y] : std::initializer_list<std::pair<double, double>>{
+             {quarter, 0}, {-quarter, 0}, {0, quarter}, {0, -quarter}, {2 * quarter, 0}}) {
+      starts.emplace_back(Eigen::Vector2d(x, y));
+    }
+    return starts;
   }
 
   void Change(const Eigen::VectorXd& values, Setting* setting) const override {
