@@ -129,6 +129,17 @@ TEST(Diagnosis, FindsTiltedGravity) {
             0.5 * diagnosis.residual_before.root_mean_square);
 }
 
+// As if another axis of the camera's frame pointed up.
+TEST(Diagnosis, FindsGravityAQuarterTurnAway) {
+  const Diagnosis diagnosis = DiagnoseSheet(TiltedGravity(std::numbers::pi / 2));
+  ASSERT_EQ(diagnosis.effects.size(), 1U) << diagnosis.refusal;
+  EXPECT_EQ(diagnosis.effects[0].name, "gravity_direction");
+  EXPECT_NEAR(diagnosis.effects[0].values[0], std::numbers::pi / 2, 0.02);
+  EXPECT_NEAR(diagnosis.effects[0].values[1], 0, 0.02);
+  EXPECT_LT(diagnosis.after.held, 3 * diagnosis.noise_floor);
+  EXPECT_GT(diagnosis.before.held, 10 * diagnosis.after.held);
+}
+
 TEST(Diagnosis, EndsWithAFitToAllFrames) {
   constexpr double kTilt = 0.12;
   const Diagnosis diagnosis = DiagnoseSheet(TiltedGravity(kTilt), JudgedBy::kOtherFrames);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "diagnosis/residual_pattern.h"
+#include "diagnosis/unexplained.h"
 #include "tests/support/random_system.h"
 #include "tests/support/swung_rope.h"
 #include "trainer/bodies/start_system.h"
@@ -53,6 +54,26 @@ struct Case {
   }
   ResidualPattern Pattern() const { return PatternOf(Find(), system, recording.fps); }
 };
+
+// Points that are elsewhere in each frame: no force that is found explains that.
+TEST(ResidualForce, SaysThatItDidNotConverge) {
+  Case c;
+  c.MoveWith("", {});
+  EXPECT_TRUE(c.Find().converged);
+  Random random(5);
+  for (int t = 1; t < kFrames; ++t) {
+    for (double& value : c.recording.points[static_cast<std::size_t>(t)].reshaped()) {
+      value += 0.5 * random.Normal();
+    }
+  }
+  const ResidualForce lost = c.Find();
+  EXPECT_FALSE(lost.converged);
+  const ResidualPattern pattern = PatternOf(lost, c.system, c.recording.fps);
+  EXPECT_FALSE(pattern.converged);
+  const Unexplained left = FindUnexplained(pattern, 0.1, c.recording.fps);
+  EXPECT_FALSE(left.converged);
+  EXPECT_FALSE(left.located);
+}
 
 TEST(ResidualForce, FollowsTheMeasuredMotionUpToItsNoise) {
   Case c;

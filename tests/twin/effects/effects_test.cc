@@ -212,5 +212,15 @@ TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
 INSTANTIATE_TEST_SUITE_P(All, Effects, testing::ValuesIn(AllEffects()),
                          [](const auto& test) { return test.param->name(); });
 
+TEST(IsAtBound, IsSoNearEitherEndButNotAtNothing) {
+  const EffectParameter even{"wind_m_per_s", -30, 30, 1};
+  EXPECT_TRUE(IsAtBound(even, 30));
+  EXPECT_TRUE(IsAtBound(even, -29.99));
+  EXPECT_FALSE(IsAtBound(even, 29));
+  const EffectParameter from_nothing{"mass_kg", 0, 3, 1};
+  EXPECT_FALSE(IsAtBound(from_nothing, 0));
+  EXPECT_TRUE(IsAtBound(from_nothing, 3));
+}
+
 }  // namespace
 }  // namespace physpring
