@@ -10,6 +10,8 @@
 #include "training_code.h"
 #include "twin/error.h"
 #include "twin/npz.h"
+#include "twin/parse_json.h"
+#include "twin/quote.h"
 
 namespace physpring {
 namespace {
@@ -65,7 +67,7 @@ void DiagnosisCheckpoint::ExpectReplaceable(const std::string& report, bool allo
 void DiagnosisCheckpoint::Resume(Journal* journal) const {
   if (!Exists(path_)) return;
   const Npz arrays = ReadCheckpoint(path_);
-  const Json in_file = Json::parse(arrays.at(kOf).ToText(), nullptr, false);
+  const Json in_file = ParseJson(arrays.at(kOf).ToText(), path_ + ": array 'of'");
   const Json now = Json::parse(of_json_);
   for (const auto& [key, value] : now.items()) {
     const Json before = in_file.is_object() ? in_file.value(key, Json()) : Json();
@@ -73,7 +75,7 @@ void DiagnosisCheckpoint::Resume(Journal* journal) const {
     throw Error(
         fmt::format("{}: is of a diagnosis with {} {}, not {}; resume with what it began "
                     "with",
-                    path_, key, before.dump(), value.dump()));
+                    path_, key, Quote(before.dump()), value.dump()));
   }
   try {
     journal->Load(arrays);

@@ -132,6 +132,14 @@ void WarnOfProblems(const std::vector<EpisodeSummary>& episodes) {
   }
 }
 
+// A sweep in which nothing went as it should is no result.
+void ExpectSomeWithoutProblem(const std::vector<EpisodeSummary>& episodes) {
+  const auto has_problem = [](const EpisodeSummary& one) { return !one.problem.empty(); };
+  if (episodes.empty() || !std::all_of(episodes.begin(), episodes.end(), has_problem)) return;
+  throw Error(fmt::format("all {} episodes ended with a problem; the first: {}", episodes.size(),
+                          episodes[0].problem));
+}
+
 void Run(const RolloutArguments& arguments) {
   LoadPluginLibrary();
   const std::string folder = FolderOf(arguments.task);
@@ -171,6 +179,7 @@ void Run(const RolloutArguments& arguments) {
     fmt::print("{} episodes were finished before, in {}\n", sweep.skipped, options.folder);
   }
   Report({{task.name, options.policy.text, sweep.episodes}}, arguments.json);
+  ExpectSomeWithoutProblem(sweep.episodes);
 }
 
 void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
@@ -188,9 +197,22 @@ void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
       ->type_name("POLICY")
       ->capture_default_str();
   command
-      ->add_option("--patience", sweep.policy.patience,
+      ->add_option("--patience", sweep.policy.patience.answer,
                    "longest that a policy server may take for an answer")
       ->check(NumberBetween(0.001, 1e6))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--first-patience", sweep.policy.patience.first_answer,
+          "the same for the first answer of an episode, before which a model may be compiled")
+      ->check(NumberBetween(0.001, 1e6))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command
+      ->add_option("--server-wait", sweep.policy.patience.wait,
+                   "longest to wait for a policy server that cannot be reached")
+      ->check(NumberBetween(0, 1e6))
       ->type_name("SECONDS")
       ->capture_default_str();
   command->add_option("--episodes", sweep.episodes, "how many")

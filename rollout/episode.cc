@@ -33,10 +33,10 @@ void CheckAction(const Eigen::VectorXd& action, const RobotOptions& robot) {
   }
   if (!action.allFinite()) throw PolicyError("the policy's action has numbers that are not finite");
   if (robot.kind != RobotKind::kCartesian) return;
-  constexpr double kLeastNorm = 1e-3;
-  if (action.segment<4>(3).norm() < kLeastNorm) {
-    throw PolicyError("the policy's action has a quaternion that is zero");
-  }
+  constexpr double kLeastNorm = 1e-3, kMostNorm = 1e3;
+  const double norm = action.segment<4>(3).norm();
+  if (norm >= kLeastNorm && norm <= kMostNorm) return;
+  throw PolicyError(fmt::format("the policy's action has a quaternion of length {:.3g}", norm));
 }
 
 // One episode under way.

@@ -12,7 +12,7 @@ namespace physpring {
 
 struct PolicyChoice {
   std::string text = "scripted";  // or random, replay:PATH, ws://HOST:PORT
-  double patience = 60;           // s, that a policy server may take for an answer
+  ServerPatience patience;
 };
 
 // A PATH of replay: that is a folder holds the episodes of an earlier run (episode_files.h), each

@@ -50,6 +50,19 @@ class PolicyError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What serves the policy failed: no verdict on the policy. The episode is not kept.
+class PolicyServerError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// How long a policy server may take, s.
+struct ServerPatience {
+  double wait = 60;           // until it can be connected to
+  double first_answer = 600;  // of a connection: a model may be compiled
+  double answer = 60;
+};
+
 // The 8 numbers of a Cartesian action. `gripper`: 0 open to 1 closed.
 Eigen::VectorXd CartesianAction(const Pose& hand, double gripper);
 

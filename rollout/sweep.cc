@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/sweep.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <map>
@@ -13,6 +15,7 @@
 #include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -59,6 +62,8 @@ class Queue {
         }
         RunJob(job, &simulation->second);
       }
+    } catch (const Stopped&) {
+      Stop();
     } catch (...) {
       stopped_ = true;
       const std::lock_guard lock(mutex_);
@@ -80,8 +85,7 @@ class Queue {
     if (hooks_.make_viewer) {
       viewer = hooks_.make_viewer(*job.model, job.episode, policy->NeedsImages());
     }
-    const EpisodeResult result =
-        RunEpisode(*job.model, start, simulation, policy.get(), viewer.get(), hooks_.stop);
+    const EpisodeResult result = RunOrFail(job, start, simulation, policy.get(), viewer.get());
     if (result.stopped) {
       Stop();
       return;
@@ -93,6 +97,17 @@ class Queue {
     if (hooks_.report) {
       hooks_.report(sweep_.episodes.back(), finished_,
                     sweep_.skipped + static_cast<int>(jobs_.size()));
+    }
+  }
+
+  // A server that fails stops the sweep: an episode without it says nothing of the policy.
+  EpisodeResult RunOrFail(const Job& job, const EpisodeStart& start, Simulation* simulation,
+                          Policy* policy, Viewer* viewer) const {
+    try {
+      return RunEpisode(*job.model, start, simulation, policy, viewer, hooks_.stop);
+    } catch (const PolicyServerError& error) {
+      throw Error(fmt::format("{}; episode {} is not judged{}", error.what(), job.episode,
+                              options_.folder.empty() ? "" : ", what was finished is kept"));
     }
   }
 

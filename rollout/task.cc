@@ -15,6 +15,11 @@
 namespace physpring {
 namespace {
 
+// The largest that a task may ask for.
+constexpr std::size_t kMostCells = 1000000;
+constexpr double kMostRate = 10000;    // Hz
+constexpr int kMostFrames = 10000000;  // of an episode, or of its settling
+
 // Where a task says nothing: enough that another seed is another episode.
 constexpr double kNoise = 0.002, kNoiseYaw = 1;  // m, degrees
 
@@ -25,6 +30,7 @@ std::string InFolder(const std::string& folder, const std::string& file) {
 int CountOr(const JsonFields& fields, const std::string& key, int missing, int least) {
   const int count = fields.Has(key) ? fields.Count(key) : missing;
   if (count < least) fields.Fail(key, fmt::format("must be {} or more", least));
+  if (count > kMostFrames) fields.Fail(key, fmt::format("must be {} or less", kMostFrames));
   return count;
 }
 
@@ -93,6 +99,12 @@ StartOptions ReadStarts(const JsonFields& fields) {
   starts.x = GridOr(fields, "x");
   starts.y = GridOr(fields, "y");
   starts.yaw = GridOr(fields, "yaw");
+  const double cells = static_cast<double>(starts.x.size()) * static_cast<double>(starts.y.size()) *
+                       static_cast<double>(starts.yaw.size());
+  if (cells > kMostCells) {
+    fields.Fail("x", fmt::format("times y and yaw makes {:.3g} cells, expected {} or fewer", cells,
+                                 kMostCells));
+  }
   for (double& yaw : starts.yaw) yaw = Radians(yaw);
   starts.noise_xy = NoiseOr(fields, "noise_xy", kNoise);
   starts.noise_yaw = Radians(NoiseOr(fields, "noise_yaw", kNoiseYaw));
@@ -165,6 +177,7 @@ Task ReadTask(const std::string& folder) {
   ReadTwinAndLevels(fields, &task);
   if (fields.Has("object")) task.object = ReadPose(fields.Object("object"));
   task.rate = PositiveNumber(fields, "rate", task.rate);
+  if (task.rate > kMostRate) fields.Fail("rate", fmt::format("must be {} Hz or less", kMostRate));
   task.settle = CountOr(fields, "settle", task.settle, 0);
   task.frames = CountOr(fields, "frames", 0, 1);
   task.robot = ReadRobot(fields.Object("robot"));

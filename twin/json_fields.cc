@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "twin/error.h"
+#include "twin/parse_json.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -14,22 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kDeepest = 32;
-
 }  // namespace
 
 JsonFields::JsonFields(const std::string& text, std::string where) : where_(std::move(where)) {
-  const auto check_depth = [this](int depth, Json::parse_event_t, Json&) {
-    if (depth <= kDeepest) return true;
-    throw Error(fmt::format("{}: is nested more than {} deep", where_, kDeepest));
-  };
-  try {
-    object_ = Json::parse(text, check_depth);
-  } catch (const Json::parse_error& error) {
-    throw Error(fmt::format("{}: is not JSON, byte {} is unexpected", where_, error.byte));
-  } catch (const Json::out_of_range&) {
-    throw Error(fmt::format("{}: has a number that is too large", where_));
-  }
+  object_ = ParseJson(text, where_);
   if (!object_.is_object()) throw Error(fmt::format("{}: is not a JSON object", where_));
 }
 

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <cassert>
 #include <memory>
+#include <new>
 #include <string_view>
 
 #include "twin/atomic_file.h"
@@ -18,7 +20,11 @@ namespace {
 
 constexpr std::size_t kLargestContent = std::size_t{1} << 32;  // bytes of all arrays together
 constexpr std::size_t kLargestDeflateRatio = 1032;             // the format's limit: RFC 1951
-constexpr std::size_t kLargestNpyHeader = 1 << 16;             // bytes
+// All numbers together as they will be held, 8 bytes each: so many bytes, or so many times the
+// file.
+constexpr std::size_t kSmallContent = std::size_t{1} << 28, kHeldPerByte = 64;
+constexpr std::size_t kLargestNpyHeader = 1 << 16;  // bytes
+constexpr std::size_t kMostOfNothing = 1 << 20;     // the extents of an array without values
 
 struct CloseZip {
   void operator()(zip_t* archive) const { zip_discard(archive); }
@@ -42,6 +48,11 @@ class ZipError {
   zip_error_t error_;
 };
 
+// So many numbers in so many bytes, once they are doubles.
+std::size_t HeldBytes(std::size_t count, std::size_t bytes) {
+  return std::max(bytes, count * sizeof(double));
+}
+
 // One member while it is read. Its messages have no path; ReadNpz puts it in front.
 class MemberReader {
  public:
@@ -59,7 +70,8 @@ class MemberReader {
     if (!member_) throw Error(zip_strerror(archive));
   }
 
-  NpzArray Read() {
+  // `most`: bytes that its values may take, as they will be held.
+  NpzArray Read(std::size_t most) {
     std::string header(std::min<std::size_t>(size(), kNpyPreamble), '\0');
     ReadBytes(header.data(), header.size());
     const std::size_t header_length = NpyHeaderLength(header);
@@ -78,6 +90,13 @@ class MemberReader {
     if (!count || expected % bytes != 0 || *count != expected / bytes) {
       throw Error(fmt::format("has the shape {} of type '{}' but {} bytes of values",
                               FormatShape(array.shape), array.type, expected));
+    }
+    if (HeldBytes(*count, size()) > most) {
+      throw Error("brings the numbers of the file to more than can be held");
+    }
+    if (*count == 0 && !array.shape.empty() &&
+        *std::max_element(array.shape.begin(), array.shape.end()) > kMostOfNothing) {
+      throw Error(fmt::format("has the shape {}, which holds nothing", FormatShape(array.shape)));
     }
     array.data.resize(expected);
     ReadBytes(array.data.data(), expected);
@@ -106,7 +125,8 @@ class MemberReader {
   ZipHandle<zip_file_t> member_;
 };
 
-void ReadMember(zip_t* archive, zip_uint64_t index, Npz& arrays, std::size_t& total) {
+void ReadMember(zip_t* archive, zip_uint64_t index, std::size_t most, Npz& arrays,
+                std::size_t& total) {
   const char* const raw_name = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
   const std::string_view file_name = raw_name ? raw_name : "";
   if (!file_name.ends_with(".npy")) {
@@ -116,11 +136,8 @@ void ReadMember(zip_t* archive, zip_uint64_t index, Npz& arrays, std::size_t& to
   if (arrays.contains(name)) throw Error(fmt::format("array {} is there twice", Quote(name)));
   try {
     MemberReader member(archive, index);
-    if (member.size() > kLargestContent - total) {
-      throw Error(fmt::format("brings the content to more than {} bytes", kLargestContent));
-    }
-    total += member.size();
-    arrays.emplace(name, member.Read());
+    arrays.emplace(name, member.Read(most - total));
+    total += HeldBytes(arrays.at(name).size(), member.size());
   } catch (const Error& error) {
     throw Error(fmt::format("array {} {}", Quote(name), error.what()));
   }
@@ -180,13 +197,17 @@ Npz ParseNpz(const std::string& bytes, const std::string& path) {
     const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
     if (count < 1) throw Error("holds no arrays");
     Npz arrays;
+    const std::size_t most =
+        std::min(kLargestContent, std::max(kSmallContent, kHeldPerByte * bytes.size()));
     std::size_t total = 0;
     for (zip_int64_t i = 0; i < count; ++i) {
-      ReadMember(archive.get(), static_cast<zip_uint64_t>(i), arrays, total);
+      ReadMember(archive.get(), static_cast<zip_uint64_t>(i), most, arrays, total);
     }
     return arrays;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("{}: holds more than there is memory for", path));
   }
 }
 

@@ -3,14 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <queue>
+#include <thread>
+#include <utility>
 
 #include "rollout/policies/openpi_messages.h"
 #include "twin/error.h"
 #include "twin/quote.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -45,70 +54,152 @@ Address ParseAddress(const std::string& text) {
   throw Error(fmt::format("policy {}: expected ws://HOST:PORT", Quote(text)));
 }
 
-// A connection whose every operation ends within `patience` seconds, or throws PolicyError.
+// The last line of what a server says; of a traceback the one that says what happened.
+std::string LastLine(const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" \r\n");
+  if (end == std::string::npos) return "";
+  const std::size_t start = text.find_last_of('\n', end);
+  return text.substr(start == std::string::npos ? 0 : start + 1, end - (start + 1) + 1);
+}
+
+using Seconds = std::chrono::duration<double>;
+
+// A connection to a server. It always reads, in a thread of its own, so that the server's pings are
+// answered while a chunk of actions is simulated. All that goes wrong with it throws
+// PolicyServerError.
 class Connection {
  public:
-  Connection(const Address& address, double patience)
+  Connection(const Address& address, const ServerPatience& patience)
       : name_(address.host + ":" + address.port), patience_(patience), stream_(io_) {
     constexpr std::size_t kMostBytes = 1 << 28, kWriteBytes = 1 << 16;
-    tcp::resolver resolver(io_);
-    boost::system::error_code failure;
-    const auto places = resolver.resolve(address.host, address.port, failure);
-    if (failure) Fail(failure.message());
-    Await([&](auto done) { stream_.next_layer().async_connect(places, done); });
+    Connect(address);
     stream_.binary(true);
     stream_.auto_fragment(false);
     stream_.write_buffer_bytes(kWriteBytes);
     stream_.read_message_max(kMostBytes);
-    Await([&](auto done) { stream_.async_handshake(name_, address.path, done); });
+    const auto failure =
+        Await([&](auto done) { stream_.async_handshake(name_, address.path, done); });
+    if (failure) Fail(failure.message());
+    Read();
+    io_.restart();
+    thread_ = std::thread([this] { io_.run(); });
   }
+  ~Connection() {
+    asio::post(io_, [this] { stream_.next_layer().close(); });
+    if (thread_.joinable()) thread_.join();
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
   void Send(const std::string& message) {
-    Await([&](auto done) { stream_.async_write(asio::buffer(message), done); });
+    const auto kept = std::make_shared<std::string>(message);
+    asio::post(io_, [this, kept] {
+      stream_.async_write(asio::buffer(*kept), [this, kept](auto failure, std::size_t) {
+        if (failure) End(failure.message());
+      });
+    });
   }
 
   std::string Receive() {
-    beast::flat_buffer buffer;
-    Await([&](auto done) { stream_.async_read(buffer, done); });
-    std::string message(static_cast<const char*>(buffer.data().data()), buffer.size());
-    if (stream_.got_text()) Fail("says " + Quote(message));  // openpi's servers tell errors so
+    const double patience = answered_ ? patience_.answer : patience_.first_answer;
+    std::unique_lock lock(mutex_);
+    const bool came = changed_.wait_for(lock, Seconds(patience),
+                                        [this] { return !messages_.empty() || !failure_.empty(); });
+    if (!came) Fail(fmt::format("does not answer within {} s", patience));
+    if (messages_.empty()) Fail(failure_);
+    const auto [message, is_text] = std::move(messages_.front());
+    messages_.pop();
+    if (is_text) Fail("says " + Quote(LastLine(message)));  // openpi's servers tell errors so
     return message;
   }
+  // From here on answers come soon.
+  void HasAnswered() { answered_ = true; }
 
  private:
-  // Starts an operation with what is to be called at its end, and waits for that.
+  // Tries again and again: a server that loads a model is not up at once.
+  void Connect(const Address& address) {
+    const auto start = std::chrono::steady_clock::now();
+    for (;;) {
+      tcp::resolver resolver(io_);
+      boost::system::error_code failure;
+      const auto places = resolver.resolve(address.host, address.port, failure);
+      if (!failure) {
+        failure = Await([&](auto done) { stream_.next_layer().async_connect(places, done); });
+      }
+      if (!failure) return;
+      const Seconds waited = std::chrono::steady_clock::now() - start;
+      if (waited.count() >= patience_.wait) {
+        Fail(fmt::format("{}, for {:.0f} s", failure.message(), waited.count()));
+      }
+      StopIfRequested();
+      std::this_thread::sleep_for(std::min<Seconds>(Seconds(0.5), Seconds(patience_.wait)));
+    }
+  }
+
+  // Waits for the end of an operation, before the thread runs.
   template <class Start>
-  void Await(const Start& start) {
+  boost::system::error_code Await(const Start& start) {
+    boost::system::error_code failure = beast::error::timeout;
     bool ended = false;
-    boost::system::error_code failure;
     start([&](boost::system::error_code error, const auto&...) {
       ended = true;
       failure = error;
     });
     io_.restart();
-    io_.run_for(std::chrono::duration_cast<std::chrono::nanoseconds>(
-        std::chrono::duration<double>(patience_)));
+    io_.run_for(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(patience_.answer)));
     if (!ended) {
       stream_.next_layer().close();
       io_.run();  // the operation's end, which refers to what is here
-      Fail(fmt::format("does not answer within {} s", patience_));
+      failure = beast::error::timeout;
     }
-    if (failure) Fail(failure.message());
+    return failure;
+  }
+
+  // In the thread: one read after the other.
+  void Read() {
+    stream_.async_read(buffer_, [this](boost::system::error_code failure, std::size_t) {
+      if (failure) {
+        const std::string reason = std::string(stream_.reason().reason.c_str());
+        End(reason.empty() ? failure.message() : fmt::format("closed: {}", Quote(reason)));
+        return;
+      }
+      {
+        const std::lock_guard lock(mutex_);
+        messages_.emplace(beast::buffers_to_string(buffer_.data()), stream_.got_text());
+      }
+      changed_.notify_all();
+      buffer_.consume(buffer_.size());
+      Read();
+    });
+  }
+  void End(const std::string& failure) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (failure_.empty()) failure_ = failure;
+    }
+    changed_.notify_all();
   }
 
   [[noreturn]] void Fail(const std::string& what) const {
-    throw PolicyError(fmt::format("policy server {}: {}", name_, what));
+    throw PolicyServerError(fmt::format("policy server {}: {}", name_, what));
   }
 
   std::string name_;
-  double patience_;  // s
+  ServerPatience patience_;
+  bool answered_ = false;
   asio::io_context io_;
   beast::websocket::stream<beast::tcp_stream> stream_;
+  beast::flat_buffer buffer_;
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  std::queue<std::pair<std::string, bool>> messages_;  // and whether it is text
+  std::string failure_;
+  std::thread thread_;  // of all operations after the handshake
 };
 
 class WebsocketPolicy : public Policy {
  public:
-  WebsocketPolicy(const Task& task, const Address& address, double patience)
+  WebsocketPolicy(const Task& task, const Address& address, const ServerPatience& patience)
       : address_(address),
         patience_(patience),
         prompt_(task.prompt),
@@ -127,6 +218,7 @@ class WebsocketPolicy : public Policy {
     if (next_ == actions_.cols()) {
       connection_->Send(EncodeObservation(observation, prompt_));
       actions_ = DecodeActions(connection_->Receive(), numbers_);
+      connection_->HasAnswered();
       next_ = 0;
     }
     return actions_.col(next_++);
@@ -134,7 +226,7 @@ class WebsocketPolicy : public Policy {
 
  private:
   Address address_;
-  double patience_;  // s
+  ServerPatience patience_;
   std::string prompt_;
   int numbers_;
   Eigen::MatrixXd actions_;  // numbers x frames
@@ -145,7 +237,7 @@ class WebsocketPolicy : public Policy {
 }  // namespace
 
 std::unique_ptr<Policy> MakeWebsocketPolicy(const Task& task, const std::string& address,
-                                            double patience) {
+                                            const ServerPatience& patience) {
   return std::make_unique<WebsocketPolicy>(task, ParseAddress(address), patience);
 }
 

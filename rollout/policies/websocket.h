@@ -11,10 +11,11 @@
 namespace physpring {
 
 // `address`: ws://HOST:PORT[/PATH]. Connects when an episode begins and asks for a chunk of actions
-// whenever the last one is used up. Everything that goes wrong, and an answer that takes longer
-// than `patience` [s], is a PolicyError. Throws Error for an address of another form.
+// whenever the last one is used up. What the server's actions lack is a PolicyError. A server that
+// is not there, is gone, takes too long or tells of an error of its own is a PolicyServerError.
+// Throws Error for an address of another form.
 std::unique_ptr<Policy> MakeWebsocketPolicy(const Task& task, const std::string& address,
-                                            double patience);
+                                            const ServerPatience& patience);
 
 }  // namespace physpring
 

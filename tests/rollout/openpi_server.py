@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A policy server as openpi's, with the msgpack code of the package openpi-client itself.
 
-openpi_server.py BEHAVIOUR LOG.npz   prints its port, then serves until it is killed
+openpi_server.py BEHAVIOUR LOG.npz [PORT]   prints its port, then serves until it is killed
 
-BEHAVIOUR: good (chunks of 7 actions that push), silent (no answer), nan, shape (7 numbers), text (an
-error, as openpi tells it), dead (closes), garbage (no msgpack). The first request is kept in LOG.npz.
+BEHAVIOUR: good (chunks of 7 actions that push), pings (all day long, with one chunk of 200 actions),
+silent (no answer), nan, shape (7 numbers), text (an error, as openpi tells it, then closes), dead
+(closes), reason (closes with one), garbage (no msgpack). The first request is kept in LOG.npz.
 """
 import asyncio
 import sys
@@ -19,8 +20,9 @@ CHUNK = 7
 
 def actions(state, behaviour):
     """A chunk that moves the hand on by 8 mm a frame along y."""
-    chunk = np.tile(state.astype(np.float32), (CHUNK, 1))
-    chunk[:, 1] += 0.008 * np.arange(1, CHUNK + 1, dtype=np.float32)
+    count = 200 if behaviour == 'pings' else CHUNK
+    chunk = np.tile(state.astype(np.float32), (count, 1))
+    chunk[:, 1] += 0.008 * np.arange(1, count + 1, dtype=np.float32)
     if behaviour == 'nan':
         chunk[3, 2] = np.nan
     return chunk[:, :7] if behaviour == 'shape' else chunk
@@ -48,7 +50,11 @@ class Server:
         elif self.behaviour == 'dead':
             connection.transport.abort()
         elif self.behaviour == 'text':
-            await connection.send('Traceback: the policy failed')
+            await connection.send('Traceback (most recent call last):\n  in infer\n'
+                                  'KeyError: the policy failed\n')
+            await connection.close(1011, 'Internal server error')
+        elif self.behaviour == 'reason':
+            await connection.close(1012, 'the server restarts')
         elif self.behaviour == 'garbage':
             await connection.send(b'\xc1\xc1')
         else:
@@ -57,9 +63,11 @@ class Server:
 
 
 async def main():
-    server = Server(*sys.argv[1:])
-    async with websockets.asyncio.server.serve(server.serve, '127.0.0.1', 0, compression=None,
-                                               max_size=None) as running:
+    server = Server(*sys.argv[1:3])
+    often = {'ping_interval': 0.02, 'ping_timeout': 0.02} if server.behaviour == 'pings' else {}
+    port = int(sys.argv[3]) if len(sys.argv) > 3 else 0
+    async with websockets.asyncio.server.serve(server.serve, '127.0.0.1', port, compression=None,
+                                               max_size=None, **often) as running:
         print(running.sockets[0].getsockname()[1], flush=True)
         await asyncio.Future()
 

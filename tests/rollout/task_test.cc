@@ -59,6 +59,25 @@ TEST_F(TaskTest, UnknownKeysAreRefused) {
   EXPECT_THAT(Message("\"settle\"", "\"setle\""), HasSubstr("key 'setle' is not known"));
 }
 
+TEST_F(TaskTest, NumbersOutOfReachAreRefused) {
+  EXPECT_THAT(Message("\"settle\": 5", "\"settle\": 2147483647"),
+              HasSubstr("key 'settle' must be 10000000 or less"));
+}
+
+TEST_F(TaskTest, RatesOutOfReachAreRefused) {
+  EXPECT_THAT(Message("\"settle\": 5", "\"settle\": 5, \"rate\": 1e300"),
+              HasSubstr("key 'rate' must be 10000 Hz or less"));
+}
+
+// 2^16 x 2^16 cells: their number as an int is 0.
+TEST_F(TaskTest, StartsMoreThanCanBeCountedAreRefused) {
+  std::string many = "[0";
+  for (int i = 1; i < 1 << 16; ++i) many += ",0";
+  many += "]";
+  EXPECT_THAT(Message("\"x\": [-0.01, 0.01]", "\"x\": " + many + ", \"y\": " + many),
+              HasSubstr("makes 8.59e+09 cells, expected 1000000 or fewer"));
+}
+
 TEST_F(TaskTest, MissingBodiesAreNamed) {
   EXPECT_THAT(Message("\"target\": \"target\"", "\"target\": \"nobody\""),
               HasSubstr("the scene has no body 'nobody'"));

@@ -22,8 +22,8 @@ HERE = pathlib.Path(__file__).parent
 class Server:
     """The server process, for `with`."""
 
-    def __init__(self, behaviour, log):
-        self.command = [PYTHON, HERE / 'openpi_server.py', behaviour, log]
+    def __init__(self, behaviour, log, *port):
+        self.command = [PYTHON, HERE / 'openpi_server.py', behaviour, log, *port]
 
     def __enter__(self):
         self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True)
@@ -44,13 +44,16 @@ class WebsocketPolicyTest(unittest.TestCase):
         self.log = self.folder / 'request.npz'
         subprocess.run([MAKE_TASK, self.task], check=True)
 
-    def rollout(self, address, *options):
-        """The report, and seconds."""
+    def run_program(self, address, *options):
         report = self.folder / 'report.json'
+        command = [PHYSPRING, 'rollout', self.task, '--policy', address, '--json', report, *options]
+        return subprocess.run(command, capture_output=True, text=True), report
+
+    def rollout(self, address, *options, status=0):
+        """The report, and seconds."""
         start = time.monotonic()
-        subprocess.run([PHYSPRING, 'rollout', self.task, '--policy', address, '--json', report,
-                        *options],
-                       check=True, stdout=subprocess.DEVNULL)
+        result, report = self.run_program(address, *options)
+        self.assertEqual(result.returncode, status, result.stderr)
         seconds = time.monotonic() - start
         return json.loads(report.read_text())['policies'][0]['episodes'], seconds
 
@@ -86,30 +89,62 @@ class WebsocketPolicyTest(unittest.TestCase):
 
     def check_problem(self, behaviour, message):
         with Server(behaviour, self.log) as address:
-            episodes, seconds = self.rollout(address, '--episodes', '2', '--patience', '2')
+            episodes, _ = self.rollout(address, '--episodes', '2', status=1)
         self.assertEqual(len(episodes), 2)  # the sweep goes on
         for episode in episodes:
             self.assertFalse(episode['success'])
             self.assertIn(message, episode['problem'])
-        return seconds
 
     def test_lying_servers_end_the_episode(self):
         self.check_problem('nan', 'not finite')
         self.check_problem('shape', 'have shape (7, 7), expected (n, 8)')
-
-    def test_failing_servers_end_the_episode(self):
-        self.check_problem('text', 'Traceback: the policy failed')
         self.check_problem('garbage', 'not msgpack')
-        self.check_problem('dead', 'policy server 127.0.0.1')
 
-    def test_slow_server_ends_the_episode_in_time(self):
-        self.assertLess(self.check_problem('silent', 'does not answer within 2 s'), 30)
+    def check_stop(self, behaviour, message, *options):
+        """The sweep ends, and keeps no episode."""
+        out = self.folder / behaviour
+        with Server(behaviour, self.log) as address:
+            result, _ = self.run_program(address, '--episodes', '2', '-o', out, *options)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(message, result.stderr)
+        self.assertIn('episode 0 is not judged', result.stderr)
+        self.assertEqual(list(out.glob('level0/*')), [])
 
-    def test_absent_server_ends_the_episode(self):
-        with socket.socket() as free:  # a port that nobody listens at
-            free.bind(('127.0.0.1', 0))
-            episodes, _ = self.rollout(f'ws://127.0.0.1:{free.getsockname()[1]}')
-        self.assertIn('Connection refused', episodes[0]['problem'])
+    def test_failing_servers_stop_the_sweep(self):
+        self.check_stop('text', "says 'KeyError: the policy failed'")
+        self.check_stop('reason', "closed: 'the server restarts'")
+        self.check_stop('dead', 'policy server 127.0.0.1')
+
+    def test_slow_server_stops_the_sweep_in_time(self):
+        start = time.monotonic()
+        self.check_stop('silent', 'does not answer within 2 s', '--first-patience', '2')
+        self.assertLess(time.monotonic() - start, 30)
+
+    def test_absent_server_stops_the_sweep(self):
+        result, _ = self.run_program(f'ws://127.0.0.1:{free_port()}', '--server-wait', '1')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('Connection refused, for 1 s', result.stderr)
+
+    def test_server_that_comes_up_late_is_waited_for(self):
+        port = free_port()
+        command = [PHYSPRING, 'rollout', self.task, '--policy', f'ws://127.0.0.1:{port}']
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as early:
+            time.sleep(1)
+            self.assertIsNone(early.poll())
+            with Server('good', self.log, str(port)):
+                self.assertEqual(early.wait(timeout=60), 0, early.stderr.read())
+
+    def test_pings_are_answered_while_a_chunk_runs(self):
+        with Server('pings', self.log) as address:
+            episodes, _ = self.rollout(address, '--episodes', '3')
+        self.assertEqual([episode['problem'] for episode in episodes], ['', '', ''])
+
+
+def free_port():
+    """One that nobody listens at."""
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        return free.getsockname()[1]
 
 
 PYTHON = python_with(ENVIRONMENT, PACKAGES)

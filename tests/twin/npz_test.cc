@@ -73,6 +73,27 @@ TEST_F(NpzFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(ReadNpz(path_), MakeArrays());
 }
 
+// 40 kB that would be 320 MB of numbers, and an array without a number that would be 64 million
+// frames.
+TEST_F(NpzFile, TakesNoMoreThanItIsWorth) {
+  WriteNpz({{"a", Bytes("|u1", {40000000}, std::string(40000000, '\0'))}}, path_);
+  EXPECT_LT(ReadFile(path_).size(), 100000u);
+  const auto error_of_reading = [&]() -> std::string {
+    try {
+      ReadNpz(path_);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error_of_reading(),
+            path_ + ": array 'a' brings the numbers of the file to more than can be held");
+  for (std::size_t frames : {std::size_t{1} << 26, std::size_t{1} << 40}) {
+    WriteNpz({{"a", Bytes("<f4", {frames, 0, 3}, "")}}, path_);
+    EXPECT_NE(error_of_reading().find("0, 3), which holds nothing"), std::string::npos);
+  }
+}
+
 TEST_F(NpzFile, WritesEqualBytesForEqualContent) {
   WriteNpz(MakeArrays(), path_);
   const std::string first = ReadFile(path_);

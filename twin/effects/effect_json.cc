@@ -7,6 +7,8 @@
 
 #include "twin/effects/registry.h"
 #include "twin/error.h"
+#include "twin/parse_json.h"
+#include "twin/quote.h"
 
 namespace physpring {
 namespace {
@@ -16,12 +18,12 @@ using Json = nlohmann::ordered_json;
 EffectValues ReadEffect(const Json& json, const std::string& where) {
   if (!json.is_object() || json.size() != 2 || !json.contains("name") ||
       !json.contains("parameters") || !json["name"].is_string()) {
-    throw Error(
-        fmt::format("{}: holds {}, expected an object of name and parameters", where, json.dump()));
+    throw Error(fmt::format("{}: holds {}, expected an object of name and parameters", where,
+                            Quote(json.dump())));
   }
   EffectValues effect{json["name"].get<std::string>(), {}};
   const Effect* const known = FindEffect(effect.name);
-  if (!known) throw Error(fmt::format("{}: there is no effect '{}'", where, effect.name));
+  if (!known) throw Error(fmt::format("{}: there is no effect {}", where, Quote(effect.name)));
   const Json& parameters = json["parameters"];
   if (!parameters.is_object() || parameters.size() != known->parameters().size()) {
     throw Error(fmt::format("{}: effect {} has {} parameters, expected {}", where, effect.name,
@@ -40,7 +42,7 @@ EffectValues ReadEffect(const Json& json, const std::string& where) {
     for (const Json& value : list) {
       if (!value.is_number()) {
         throw Error(fmt::format("{}: {} of effect {} is {}, expected a number", where,
-                                parameter.key, effect.name, value.dump()));
+                                parameter.key, effect.name, Quote(value.dump())));
       }
       values.push_back(value.get<double>());
     }
@@ -67,7 +69,7 @@ std::string EffectsToJson(const std::vector<EffectValues>& effects) {
 }
 
 std::vector<EffectValues> EffectsFromJson(const std::string& text, const std::string& where) {
-  const Json list = Json::parse(text, nullptr, false);
+  const Json list = ParseJson(text, where);
   if (!list.is_array()) throw Error(where + ": is not a JSON list of effects");
   std::vector<EffectValues> effects;
   for (const Json& effect : list) effects.push_back(ReadEffect(effect, where));

@@ -212,6 +212,19 @@ TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
 INSTANTIATE_TEST_SUITE_P(All, Effects, testing::ValuesIn(AllEffects()),
                          [](const auto& test) { return test.param->name(); });
 
+TEST(EffectJson, IsNotNestedDeep) {
+  for (const std::string& open : {std::string("["), std::string("[{\"name\":")}) {
+    std::string deep;
+    for (int i = 0; i < 100000; ++i) deep += open;
+    try {
+      EffectsFromJson(deep, "a twin");
+      ADD_FAILURE() << "was read";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), "a twin: is nested more than 32 deep");
+    }
+  }
+}
+
 TEST(IsAtBound, IsSoNearEitherEndButNotAtNothing) {
   const EffectParameter even{"wind_m_per_s", -30, 30, 1};
   EXPECT_TRUE(IsAtBound(even, 30));
