@@ -3,7 +3,7 @@
 
 openpi_server.py BEHAVIOUR LOG.npz [PORT]   prints its port, then serves until it is killed
 
-BEHAVIOUR: good (chunks of 7 actions that push), pings (all day long, with one chunk of 200 actions),
+BEHAVIOUR: good (chunks of 7 actions that push), pings (a chunk of 200 actions, then a ping; each pong is a line of LOG.npz.pongs),
 silent (no answer), nan, shape (7 numbers), text (an error, as openpi tells it, then closes), dead
 (closes), reason (closes with one), garbage (no msgpack). The first request is kept in LOG.npz.
 """
@@ -60,14 +60,17 @@ class Server:
         else:
             chunk = actions(request['state'], self.behaviour)
             await connection.send(packer.pack({'actions': chunk, 'server_timing': {'infer_ms': 1.0}}))
+            if self.behaviour == 'pings':  # the client needs nothing more, but is still there
+                await asyncio.wait_for(await connection.ping(), 10)
+                with open(self.log + '.pongs', 'a') as pongs:
+                    pongs.write('pong\n')
 
 
 async def main():
     server = Server(*sys.argv[1:3])
-    often = {'ping_interval': 0.02, 'ping_timeout': 0.02} if server.behaviour == 'pings' else {}
     port = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     async with websockets.asyncio.server.serve(server.serve, '127.0.0.1', port, compression=None,
-                                               max_size=None, **often) as running:
+                                               max_size=None) as running:
         print(running.sockets[0].getsockname()[1], flush=True)
         await asyncio.Future()
 

@@ -96,7 +96,7 @@ TEST_F(TaskTest, LevelsMustBeOfTheTwin) {
 TEST_F(TaskTest, SuccessMustFitIntoTheEpisode) {
   EXPECT_THAT(Message("\"from_frame\": 10", "\"from_frame\": 19"),
               HasSubstr("do not fit into 20 frames"));
-  EXPECT_THAT(Message("\"from_frame\": 19", "\"from_frame\": 2147483647"),
+  EXPECT_THAT(Message("\"from_frame\": 19", "\"from_frame\": 9999999"),
               HasSubstr("do not fit into 20 frames"));
 }
 

@@ -108,7 +108,7 @@ class WebsocketPolicyTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn(message, result.stderr)
         self.assertIn('episode 0 is not judged', result.stderr)
-        self.assertEqual(list(out.glob('level0/*')), [])
+        self.assertEqual(list(out.glob('level0/episode*')), [])
 
     def test_failing_servers_stop_the_sweep(self):
         self.check_stop('text', "says 'KeyError: the policy failed'")
@@ -138,6 +138,8 @@ class WebsocketPolicyTest(unittest.TestCase):
         with Server('pings', self.log) as address:
             episodes, _ = self.rollout(address, '--episodes', '3')
         self.assertEqual([episode['problem'] for episode in episodes], ['', '', ''])
+        pongs = pathlib.Path(f'{self.log}.pongs').read_text()
+        self.assertEqual(pongs, 'pong\n' * 3)
 
 
 def free_port():
