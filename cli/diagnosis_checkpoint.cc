@@ -27,6 +27,12 @@ std::vector<std::string> HashesOf(const std::vector<Recording>& recordings) {
   return hashes;
 }
 
+// What a damaged file holds may be long, and no text.
+std::string Shortened(const std::string& json) {
+  constexpr std::size_t kShort = 60;
+  return json.size() <= kShort ? json : Quote(json);
+}
+
 // Throws Error unless the file is a checkpoint.
 Npz ReadCheckpoint(const std::string& path) {
   Npz arrays = ReadNpz(path);
@@ -75,7 +81,7 @@ void DiagnosisCheckpoint::Resume(Journal* journal) const {
     throw Error(
         fmt::format("{}: is of a diagnosis with {} {}, not {}; resume with what it began "
                     "with",
-                    path_, key, Quote(before.dump()), value.dump()));
+                    path_, key, Shortened(before.dump()), value.dump()));
   }
   try {
     journal->Load(arrays);

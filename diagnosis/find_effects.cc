@@ -198,14 +198,13 @@ Attempt FitSprings(const Inquiry& inquiry, Attempt attempt, int round, const Wor
 }
 
 // The parameters of the effect that was found that are at a bound, "KEY (value)", in words. What
-// ends there stands for something else. Free forms have some there; they are judged as a whole.
+// ends there stands for something else. Values along the body, or over time, are judged as a whole.
 std::string AtBounds(const EffectValues& effect) {
-  if (IsFreeForm(effect.values.size())) return "";
   std::string keys;
   Eigen::Index i = 0;
   for (const EffectParameter& parameter : GetEffect(effect.name).parameters()) {
     for (int k = 0; k < parameter.count; ++k, ++i) {
-      if (!IsAtBound(parameter, effect.values[i])) continue;
+      if (parameter.count > 1 || !IsAtBound(parameter, effect.values[i])) continue;
       keys +=
           fmt::format("{}{} ({:.3g})", keys.empty() ? "" : ", ", parameter.key, effect.values[i]);
     }

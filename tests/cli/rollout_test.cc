@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 class RolloutTest : public testing::Test {
  protected:
@@ -188,11 +189,13 @@ TEST_F(RolloutTest, LeavesTheTasksFilesAlone) {
   EXPECT_EQ(ReadFile(task_.path() + "/scene.xml"), before);
 }
 
-TEST_F(RolloutTest, SaysWhyEpisodesEndedEarly) {
-  const ProgramResult result = Run({"--policy", "ws://127.0.0.1:1", "--episodes", "2"});
-  EXPECT_EQ(result.status, 0);
-  EXPECT_THAT(result.errors, HasSubstr("warning: 2 of 2 episodes ended early: "));
+TEST_F(RolloutTest, IsNoVerdictWithoutAServer) {
+  const ProgramResult result =
+      Run({"--policy", "ws://127.0.0.1:1", "--episodes", "2", "--server-wait", "0"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.output, Not(HasSubstr("0 of 2")));
   EXPECT_THAT(result.errors, HasSubstr("Connection refused"));
+  EXPECT_THAT(result.errors, HasSubstr("episode 0 is not judged"));
 }
 
 TEST_F(RolloutTest, ComparesNothingWhereNoEpisodeIsInCommon) {
