@@ -11,6 +11,8 @@
 #include "cli/train_options.h"
 #include "training_code.h"
 #include "twin/error.h"
+#include "twin/json_text.h"
+#include "twin/quote.h"
 
 namespace physpring {
 namespace {
@@ -78,9 +80,11 @@ void Checkpoint::ExpectSameTraining(const Twin& twin) const {
     throw Error(
         fmt::format("{}: was trained with {} {}, not {}; resume with what it was trained "
                     "with",
-                    path_, what, in_file, now));
+                    path_, Shorten(what), Shorten(fmt::format("{}", in_file)),
+                    Shorten(fmt::format("{}", now))));
   };
-  const Json in_file = Json::parse(twin.options_json), now = Json::parse(labels_.options_json);
+  const Json in_file = ParseJson(twin.options_json, path_ + ": options");
+  const Json now = ParseJson(labels_.options_json, "options");
   Json keys = in_file;  // the keys of the file, and below those that are new
   keys.update(now);
   for (const auto& [key, value] : keys.items()) {

@@ -9,8 +9,8 @@
 #include "cli/output_files.h"
 #include "training_code.h"
 #include "twin/error.h"
+#include "twin/json_text.h"
 #include "twin/npz.h"
-#include "twin/parse_json.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -27,12 +27,6 @@ std::vector<std::string> HashesOf(const std::vector<Recording>& recordings) {
   return hashes;
 }
 
-// What a damaged file holds may be long, and no text.
-std::string Shortened(const std::string& json) {
-  constexpr std::size_t kShort = 60;
-  return json.size() <= kShort ? json : Quote(json);
-}
-
 // Throws Error unless the file is a checkpoint.
 Npz ReadCheckpoint(const std::string& path) {
   Npz arrays = ReadNpz(path);
@@ -43,6 +37,18 @@ Npz ReadCheckpoint(const std::string& path) {
     }
   }
   return arrays;
+}
+
+// What the diagnosis in the file is of.
+Json ReadOf(const Npz& arrays, const std::string& path) {
+  const std::string where = fmt::format("{}: array '{}'", path, kOf);
+  std::string text;
+  try {
+    text = arrays.at(kOf).ToText();
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} {}", where, error.what()));
+  }
+  return ParseJson(text, where);
 }
 
 }  // namespace
@@ -73,15 +79,15 @@ void DiagnosisCheckpoint::ExpectReplaceable(const std::string& report, bool allo
 void DiagnosisCheckpoint::Resume(Journal* journal) const {
   if (!Exists(path_)) return;
   const Npz arrays = ReadCheckpoint(path_);
-  const Json in_file = ParseJson(arrays.at(kOf).ToText(), path_ + ": array 'of'");
-  const Json now = Json::parse(of_json_);
+  const Json in_file = ReadOf(arrays, path_);
+  const Json now = ParseJson(of_json_, path_);
   for (const auto& [key, value] : now.items()) {
     const Json before = in_file.is_object() ? in_file.value(key, Json()) : Json();
     if (before == value) continue;
     throw Error(
         fmt::format("{}: is of a diagnosis with {} {}, not {}; resume with what it began "
                     "with",
-                    path_, key, Shortened(before.dump()), value.dump()));
+                    path_, key, Shorten(before.dump()), Shorten(value.dump())));
   }
   try {
     journal->Load(arrays);

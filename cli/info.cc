@@ -18,10 +18,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+struct Kind {
+  bool is_twin, is_recording;
+};
+
+// Holds the arrays no longer than it looks at them.
+Kind KindOf(const std::string& path) {
+  const Npz arrays = ReadNpz(path);
+  return {arrays.contains("meta"), arrays.contains("points")};
+}
+
 // Prints what `path` holds and returns it as JSON.
 Json Inspect(const std::string& path) {
-  const Npz arrays = ReadNpz(path);
-  if (arrays.contains("meta")) {
+  const Kind kind = KindOf(path);
+  if (kind.is_twin) {
     const Twin twin = ReadTwin(path);
     fmt::print("{}: a twin named {} with {} {}\n{}", path, twin.name, twin.levels.size(),
                twin.levels.size() == 1 ? "level" : "levels", DescribeTwin(twin));
@@ -30,10 +40,10 @@ Json Inspect(const std::string& path) {
     json["finished"] = IsFinished(twin);
     return json;
   }
-  if (arrays.contains("points")) {
+  if (kind.is_recording) {
     const Recording recording = ReadRecording(path);
     fmt::print("{}: a recording\n{}", path, DescribeRecording(recording));
-    PrintRemarks({recording});
+    PrintRemarks({&recording, 1});
     return RecordingToJson(recording);
   }
   throw Error(fmt::format(

@@ -73,7 +73,7 @@ void Run(const std::string& scene, const std::string& output, bool force,
   ExpectNew(output, force);
   const Recording recording = Simulate(scene, options);
   WriteRecording(recording, output);
-  PrintRemarks({recording});
+  PrintRemarks({&recording, 1});
   fmt::print("{}: {} frames at {} fps, {} points, {} interior, {} controllers, {:.4g} kg\n", output,
              recording.frame_count(), recording.fps, recording.point_count(),
              recording.interior_count(), recording.controller_count(), recording.mass);

@@ -138,7 +138,7 @@ void Run(const ReplayArguments& arguments) {
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
   const Recording recording = ReadRecording(arguments.recording);
-  PrintRemarks({recording});
+  PrintRemarks({&recording, 1});
   ControllerReplay replay;
   try {
     replay = Replay(arguments, recording);

@@ -8,6 +8,7 @@
 #include "cli/train_words.h"
 #include "trainer/reduction/registry.h"
 #include "twin/effects/effect_json.h"
+#include "twin/json_text.h"
 
 namespace physpring {
 namespace {
@@ -171,7 +172,8 @@ std::string TrainOptionsJson(const TrainOptions& options, const std::string& fro
   VisitTrainOptions(options, visitor);
   Json& json = visitor.json;
   if (!from.empty()) json["from"] = from;
-  if (!options.effects.empty()) json["effects"] = Json::parse(EffectsToJson(options.effects));
+  if (!options.effects.empty())
+    json["effects"] = ParseJson(EffectsToJson(options.effects), "--effects");
   return json.dump();
 }
 

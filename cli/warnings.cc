@@ -45,7 +45,7 @@ void PrintWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : JoinAlike(warnings)) Tell("warning: {}\n", warning);
 }
 
-std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings) {
+std::vector<std::string> WarningsOf(std::span<const Recording> recordings) {
   std::vector<std::string> warnings;
   for (const Recording& recording : recordings) {
     warnings.insert(warnings.end(), recording.warnings.begin(), recording.warnings.end());
@@ -53,7 +53,7 @@ std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings) {
   return warnings;
 }
 
-void PrintRemarks(const std::vector<Recording>& recordings) {
+void PrintRemarks(std::span<const Recording> recordings) {
   PrintWarnings(WarningsOf(recordings));
   std::vector<std::string> notes;
   for (const Recording& recording : recordings) {

@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_CLI_WARNINGS_H_
 #define PHYSPRING_CLI_WARNINGS_H_
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,10 @@ std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings);
 void PrintWarnings(const std::vector<std::string>& warnings);
 
 // Those of all recordings.
-std::vector<std::string> WarningsOf(const std::vector<Recording>& recordings);
+std::vector<std::string> WarningsOf(std::span<const Recording> recordings);
 
 // The recordings' warnings and notes.
-void PrintRemarks(const std::vector<Recording>& recordings);
+void PrintRemarks(std::span<const Recording> recordings);
 
 }  // namespace physpring
 

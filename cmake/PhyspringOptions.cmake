@@ -3,6 +3,7 @@
 
 option(PHYSPRING_WERROR "Treat warnings as errors" OFF)
 option(PHYSPRING_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+option(PHYSPRING_FUZZ "Build the fuzz targets for libFuzzer, too (needs clang)" OFF)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE RelWithDebInfo)
@@ -22,6 +23,8 @@ target_compile_options(physpring_options INTERFACE
   $<$<BOOL:${PHYSPRING_WERROR}>:-Werror>
   # g++ 12 sees an overflow in fmt's headers that is not there
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
+  # clang does not know g++'s ivdep
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-pragmas>
   # a fused multiply-add rounds once instead of twice: without it every machine gives the same bits
   -ffp-contract=off)
 
@@ -29,4 +32,8 @@ if(PHYSPRING_SANITIZE)
   set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_compile_options(physpring_options INTERFACE -O1 -g1 ${sanitize})
   target_link_options(physpring_options INTERFACE ${sanitize})
+endif()
+if(PHYSPRING_FUZZ)
+  # libFuzzer's view of which code an input reaches; its main comes with the targets alone
+  target_compile_options(physpring_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()

@@ -88,7 +88,7 @@ int Springs::StateSize(const mjModel* model, int instance) {
   if (!Attributes(model, instance).Has(kAttrEffects)) return size;
   try {
     return size + SpringsModel(model, instance).internal_size();
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     return size;  // refused, with a message, when an instance is made
   }
 }

@@ -10,6 +10,7 @@
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
 #include "twin/ground.h"
+#include "twin/json_text.h"
 #include "twin/level_numbers.h"
 #include "twin/stability.h"
 
@@ -169,7 +170,7 @@ Json TwinToJson(const Twin& twin) {
           {"controller_velocity", twin.controller_velocity},
           {"trained_on", trained_on},
           {"seed", twin.seed},
-          {"options", Json::parse(twin.options_json)},
+          {"options", ParseJson(twin.options_json, "options")},
           {"levels", levels}};
 }
 

@@ -137,7 +137,7 @@ void WriteEpisode(const std::string& folder, const EpisodeResult& result, bool s
 std::optional<EpisodeSummary> ReadEpisode(const std::string& folder, int level, int episode) {
   const std::string path = EpisodePath(folder, level, episode), file = path + ".json";
   if (!std::filesystem::exists(file)) return std::nullopt;
-  const JsonFields fields(ReadFile(file), file);
+  const JsonFields fields = ReadJsonFile(file);
   EpisodeSummary summary;
   summary.episode = fields.Count("episode");
   summary.level = fields.Count("level");

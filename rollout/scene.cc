@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/scene.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -50,7 +52,14 @@ ModelPtr CompileScene(const std::string& mjcf, const std::string& where, const S
 }
 
 int FitTimestep(double fps, mjModel* model) {
+  constexpr double kMostSteps = 1e6;
   const double steps = std::ceil(1 / (fps * model->opt.timestep) - 1e-6);
+  if (!(steps <= kMostSteps)) {
+    throw Error(
+        fmt::format("the scene's timestep of {} s gives {} steps in a frame of {} s, "
+                    "expected at most {}",
+                    model->opt.timestep, steps, 1 / fps, kMostSteps));
+  }
   model->opt.timestep = 1 / (fps * steps);
   return static_cast<int>(steps);
 }

@@ -32,7 +32,8 @@ using SceneEdit = std::function<void(mjSpec*)>;
 ModelPtr EditScene(const std::string& path, const SceneEdit& edit);
 ModelPtr CompileScene(const std::string& mjcf, const std::string& where, const SceneEdit& edit);
 
-// Shortens the time step so that a frame is a whole number of them, which it returns.
+// Shortens the time step so that a frame is a whole number of them, which it returns. Throws Error
+// where that are more than a million.
 int FitTimestep(double fps, mjModel* model);
 
 // Throws Error when the model needs more memory than there is.

@@ -60,9 +60,9 @@ class SpringsThrough : public SuccessRule {
 class ParticlesInside : public SuccessRule {
  public:
   explicit ParticlesInside(const JsonFields& numbers)
-      : box_(ReadBox(numbers.Object("box"))), fraction_(PositiveNumber(numbers, "fraction", 1)) {
+      : box_(ReadBox(numbers.Object("box"))),
+        fraction_(PositiveNumberOr(numbers, "fraction", 1, 1)) {
     numbers.ExpectOnly({"box", "fraction"});
-    if (fraction_ > 1) numbers.Fail("fraction", "must be at most 1");
   }
 
   Verdict Judge(const Points& particles) const override {
@@ -83,9 +83,8 @@ class NearTarget : public SuccessRule {
   NearTarget(const JsonFields& numbers, const SpringMassSystem& system)
       : target_(ReadPose(numbers.Object("target"))
                     .ToWorld(system.position.leftCols(system.node_count()))),
-        most_(FiniteNumber(numbers, "mean_squared_distance")) {
+        most_(PositiveNumber(numbers, "mean_squared_distance", kFarthest * kFarthest)) {
     numbers.ExpectOnly({"target", "mean_squared_distance"});
-    if (most_ <= 0) numbers.Fail("mean_squared_distance", "must be above 0 m^2");
   }
 
   Verdict Judge(const Points& particles) const override {
@@ -101,9 +100,8 @@ class NearTarget : public SuccessRule {
 class PairsClose : public SuccessRule {
  public:
   PairsClose(const JsonFields& numbers, const SpringMassSystem& system)
-      : most_(FiniteNumber(numbers, "distance")) {
+      : most_(PositiveNumber(numbers, "distance", kFarthest)) {
     numbers.ExpectOnly({"pairs", "distance"});
-    if (most_ <= 0) numbers.Fail("distance", "must be above 0 m");
     for (const std::vector<int>& pair : numbers.WholeNumberLists("pairs")) {
       if (pair.size() != 2 || std::min(pair[0], pair[1]) < 0 ||
           std::max(pair[0], pair[1]) >= system.node_count()) {

@@ -13,7 +13,9 @@
 #include "twin/draft_file.h"
 #include "twin/error.h"
 #include "twin/json_fields.h"
+#include "twin/json_text.h"
 #include "twin/npz.h"
+#include "twin/quote.h"
 
 namespace physpring {
 namespace {
@@ -90,21 +92,21 @@ void OpenSweepFolder(const Task& task, const SweepOptions& options,
                     folder));
   }
   if (IsNewOrHolds(file, identity)) return;
-  const JsonFields now(identity, file), before(ReadFile(file), file);
+  const JsonFields now(identity, file), before = ReadJsonFile(file);
   for (const char* key : {"task", "task_hash", "policy", "seed", "action_noise", "perturb"}) {
     const auto value = [key](const JsonFields& fields) {
-      return nlohmann::json::parse(fields.Dump()).value(key, nlohmann::json()).dump();
+      return fields.json().value(key, nlohmann::ordered_json());
     };
     if (value(now) == value(before)) continue;
     throw Error(fmt::format("{}: holds a sweep with {} {}, not {}; use another folder", file, key,
-                            value(before), value(now)));
+                            Shorten(value(before).dump()), Shorten(value(now).dump())));
   }
 }
 
 StoredSweep ReadSweepFolder(const std::string& folder) {
   const std::string file = folder + "/sweep.json";
   StoredSweep sweep;
-  sweep.identity = ReadFile(file);
+  sweep.identity = ReadFile(file, JsonLimits::kBytes);
   const JsonFields fields(sweep.identity, file);
   sweep.task = fields.Text("task");
   sweep.policy = fields.Text("policy");

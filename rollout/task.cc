@@ -8,38 +8,43 @@
 #include <nlohmann/json.hpp>
 
 #include "rollout/task_fields.h"
-#include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/quote.h"
 
 namespace physpring {
 namespace {
 
-// The largest that a task may ask for.
-constexpr std::size_t kMostCells = 1000000;
-constexpr double kMostRate = 10000;    // Hz
-constexpr int kMostFrames = 10000000;  // of an episode, or of its settling
-
 // Where a task says nothing: enough that another seed is another episode.
 constexpr double kNoise = 0.002, kNoiseYaw = 1;  // m, degrees
+
+// The most that a task may ask for: beyond what anybody waits for, and far from what overflows.
+constexpr double kLeastRate = 0.1, kMostRate = 1e4;  // Hz
+constexpr int kMostFrames = 100000, kMostCells = 1000000;
+constexpr double kMostControl = 1e6;                     // of an actuator, in its unit
+constexpr double kMostSpeed = 1000, kMostTurns = 36000;  // m/s or 1/s, degrees/s
 
 std::string InFolder(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).string();
 }
 
-int CountOr(const JsonFields& fields, const std::string& key, int missing, int least) {
-  const int count = fields.Has(key) ? fields.Count(key) : missing;
-  if (count < least) fields.Fail(key, fmt::format("must be {} or more", least));
-  if (count > kMostFrames) fields.Fail(key, fmt::format("must be {} or less", kMostFrames));
-  return count;
+// The path of a file that a key names. Messages begin with it, so it is a plain line.
+std::string FileOf(const JsonFields& fields, const std::string& key, const std::string& folder,
+                   const std::string& file) {
+  constexpr std::size_t kLongest = 1000;
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+  if (file.empty() || file.size() > kLongest || std::filesystem::path(file).is_absolute() ||
+      std::any_of(file.begin(), file.end(), is_control)) {
+    fields.Fail(key, fmt::format("holds {}, expected a file relative to the folder", Quote(file)));
+  }
+  return InFolder(folder, file);
 }
 
 std::string TextOr(const JsonFields& fields, const std::string& key, const std::string& missing) {
   return fields.Has(key) ? fields.Text(key) : missing;
 }
 
-Eigen::VectorXd VectorOf(const JsonFields& fields, const std::string& key) {
-  const std::vector<double> numbers = fields.Numbers(key);
+Eigen::VectorXd Controls(const JsonFields& fields, const std::string& key) {
+  const std::vector<double> numbers = NumbersBetween(fields, key, -kMostControl, kMostControl);
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
                                            static_cast<Eigen::Index>(numbers.size()));
 }
@@ -49,14 +54,15 @@ void ReadCartesian(const JsonFields& fields, RobotOptions* robot) {
   robot->hand = fields.Text("hand");
   const auto fingers = static_cast<Eigen::Index>(robot->actuators.size());
   if (fingers > 0) {
-    robot->open = VectorOf(fields, "open");
-    robot->closed = VectorOf(fields, "closed");
+    robot->open = Controls(fields, "open");
+    robot->closed = Controls(fields, "closed");
     if (robot->open.size() != fingers) fields.Fail("open", "must have one number an actuator");
     if (robot->closed.size() != fingers) fields.Fail("closed", "must have one number an actuator");
   }
-  robot->speed = PositiveNumber(fields, "speed", robot->speed);
-  robot->turn_speed = Radians(PositiveNumber(fields, "turn_speed", 180));
-  robot->gripper_speed = PositiveNumber(fields, "gripper_speed", robot->gripper_speed);
+  robot->speed = PositiveNumberOr(fields, "speed", robot->speed, kMostSpeed);
+  robot->turn_speed = Radians(PositiveNumberOr(fields, "turn_speed", 180, kMostTurns));
+  robot->gripper_speed =
+      PositiveNumberOr(fields, "gripper_speed", robot->gripper_speed, kMostSpeed);
 }
 
 RobotOptions ReadRobot(const JsonFields& fields) {
@@ -72,42 +78,42 @@ RobotOptions ReadRobot(const JsonFields& fields) {
     robot.kind = RobotKind::kJoints;
     if (robot.actuators.empty()) fields.Fail("kind", "is joints, but there are no actuators");
   }
-  if (fields.Has("home")) robot.home = VectorOf(fields, "home");
+  if (fields.Has("home")) robot.home = Controls(fields, "home");
   if (robot.home.size() > 0 && robot.home.size() != robot.action_size()) {
     fields.Fail("home", fmt::format("must have {} numbers", robot.action_size()));
   }
   return robot;
 }
 
-std::vector<double> GridOr(const JsonFields& fields, const std::string& key) {
+std::vector<double> GridOr(const JsonFields& fields, const std::string& key, double most) {
   if (!fields.Has(key)) return {0};
-  std::vector<double> numbers = fields.Numbers(key);
+  std::vector<double> numbers = NumbersBetween(fields, key, -most, most);
   if (numbers.empty()) fields.Fail(key, "must not be empty");
   return numbers;
 }
 
-double NoiseOr(const JsonFields& fields, const std::string& key, double missing) {
-  if (!fields.Has(key)) return missing;
-  const double noise = FiniteNumber(fields, key);
-  if (noise < 0) fields.Fail(key, "must be 0 or more");
-  return noise;
+double NoiseOr(const JsonFields& fields, const std::string& key, double missing, double most) {
+  return fields.Has(key) ? NumberBetween(fields, key, 0, most) : missing;
 }
 
-StartOptions ReadStarts(const JsonFields& fields) {
+// `where`: the file, with the key of the starts.
+StartOptions ReadStarts(const JsonFields& fields, const std::string& where) {
   fields.ExpectOnly({"x", "y", "yaw", "noise_xy", "noise_yaw"});
   StartOptions starts;
-  starts.x = GridOr(fields, "x");
-  starts.y = GridOr(fields, "y");
-  starts.yaw = GridOr(fields, "yaw");
-  const double cells = static_cast<double>(starts.x.size()) * static_cast<double>(starts.y.size()) *
-                       static_cast<double>(starts.yaw.size());
+  starts.x = GridOr(fields, "x", kFarthest);
+  starts.y = GridOr(fields, "y", kFarthest);
+  starts.yaw = GridOr(fields, "yaw", kTurn);
+  double cells = 1;  // three counts of a file, exact in a double
+  for (const auto* axis : {&starts.x, &starts.y, &starts.yaw}) {
+    cells *= static_cast<double>(axis->size());
+  }
   if (cells > kMostCells) {
-    fields.Fail("x", fmt::format("times y and yaw makes {:.3g} cells, expected {} or fewer", cells,
-                                 kMostCells));
+    throw Error(fmt::format("{}: key 'starts' has {} cells, expected at most {}", where, cells,
+                            kMostCells));
   }
   for (double& yaw : starts.yaw) yaw = Radians(yaw);
-  starts.noise_xy = NoiseOr(fields, "noise_xy", kNoise);
-  starts.noise_yaw = Radians(NoiseOr(fields, "noise_yaw", kNoiseYaw));
+  starts.noise_xy = NoiseOr(fields, "noise_xy", kNoise, kFarthest);
+  starts.noise_yaw = Radians(NoiseOr(fields, "noise_yaw", kNoiseYaw, kTurn));
   return starts;
 }
 
@@ -115,21 +121,21 @@ SuccessOptions ReadSuccess(const JsonFields& fields, int frames) {
   SuccessOptions success;
   success.rule = fields.Text("rule");
   success.body = TextOr(fields, "body", "");
-  success.from_frame = CountOr(fields, "from_frame", 0, 0);
-  success.at_least = CountOr(fields, "at_least", 1, 1);
+  if (fields.Has("from_frame")) success.from_frame = fields.Count("from_frame");
+  if (fields.Has("at_least")) success.at_least = CountBetween(fields, "at_least", 1, frames);
   if (success.from_frame > frames - success.at_least) {
     fields.Fail("from_frame", fmt::format("and at_least do not fit into {} frames", frames));
   }
-  nlohmann::ordered_json numbers = nlohmann::ordered_json::parse(fields.Dump());
+  nlohmann::ordered_json numbers = fields.json();
   for (const char* key : {"rule", "body", "from_frame", "at_least"}) numbers.erase(key);
   success.numbers = numbers.dump();
   return success;
 }
 
 void ReadTwinAndLevels(const JsonFields& fields, Task* task) {
-  task->twin = ReadTwin(InFolder(task->folder, fields.Text("twin")));
+  task->twin = ReadTwin(FileOf(fields, "twin", task->folder, fields.Text("twin")));
   for (const std::string& file : fields.Texts("levels")) {
-    task->levels.push_back(InFolder(task->folder, file));
+    task->levels.push_back(FileOf(fields, "levels", task->folder, file));
   }
   if (task->levels.empty() || task->levels.size() > task->twin.levels.size()) {
     fields.Fail("levels", fmt::format("must name 1 to {} files, as the twin has levels",
@@ -166,22 +172,21 @@ int StartOptions::cells() const { return static_cast<int>(x.size() * y.size() * 
 
 Task ReadTask(const std::string& folder) {
   const std::string file = InFolder(folder, "task.json");
-  const JsonFields fields(ReadFile(file, std::size_t{1} << 24), file);
+  const JsonFields fields = ReadJsonFile(file);
   fields.ExpectOnly({"prompt", "scene", "twin", "levels", "object", "rate", "settle", "frames",
                      "robot", "starts", "success", "policy", "cameras", "image"});
   Task task;
   task.folder = folder;
   task.name = NameOfFolder(folder);
   task.prompt = TextOr(fields, "prompt", "");
-  task.scene = InFolder(folder, TextOr(fields, "scene", "scene.xml"));
+  task.scene = FileOf(fields, "scene", folder, TextOr(fields, "scene", "scene.xml"));
   ReadTwinAndLevels(fields, &task);
   if (fields.Has("object")) task.object = ReadPose(fields.Object("object"));
-  task.rate = PositiveNumber(fields, "rate", task.rate);
-  if (task.rate > kMostRate) fields.Fail("rate", fmt::format("must be {} Hz or less", kMostRate));
-  task.settle = CountOr(fields, "settle", task.settle, 0);
-  task.frames = CountOr(fields, "frames", 0, 1);
+  if (fields.Has("rate")) task.rate = NumberBetween(fields, "rate", kLeastRate, kMostRate);
+  if (fields.Has("settle")) task.settle = CountBetween(fields, "settle", 0, kMostFrames);
+  task.frames = CountBetween(fields, "frames", 1, kMostFrames);
   task.robot = ReadRobot(fields.Object("robot"));
-  if (fields.Has("starts")) task.starts = ReadStarts(fields.Object("starts"));
+  if (fields.Has("starts")) task.starts = ReadStarts(fields.Object("starts"), file);
   task.success = ReadSuccess(fields.Object("success"), task.frames);
   task.policy = TextOr(fields, "policy", "");
   ReadCameras(fields, &task);

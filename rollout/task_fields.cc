@@ -1,39 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/task_fields.h"
 
-#include <cmath>
+#include <fmt/format.h>
+
 #include <numbers>
-#include <vector>
 
 namespace physpring {
 
-double FiniteNumber(const JsonFields& fields, const std::string& key) {
-  const double number = fields.Number(key);
-  if (!std::isfinite(number)) fields.Fail(key, "is not finite");
-  return number;
-}
+namespace {
 
-double PositiveNumber(const JsonFields& fields, const std::string& key, double missing) {
-  if (!fields.Has(key)) return missing;
-  const double number = FiniteNumber(fields, key);
-  if (number <= 0) fields.Fail(key, "must be above 0");
-  return number;
-}
-
-Eigen::Vector3d ThreeNumbers(const JsonFields& fields, const std::string& key) {
-  const std::vector<double> numbers = fields.Numbers(key);
+Eigen::Vector3d ThreeNumbers(const JsonFields& fields, const std::string& key, double most) {
+  const std::vector<double> numbers = NumbersBetween(fields, key, -most, most);
   if (numbers.size() != 3) fields.Fail(key, "must be three numbers");
   return Eigen::Map<const Eigen::Vector3d>(numbers.data());
+}
+
+}  // namespace
+
+std::vector<double> NumbersBetween(const JsonFields& fields, const std::string& key, double least,
+                                   double most) {
+  std::vector<double> numbers = fields.Numbers(key);
+  for (const double number : numbers) {
+    if (number >= least && number <= most) continue;
+    fields.Fail(key, fmt::format("holds {}, expected numbers from {} to {}", number, least, most));
+  }
+  return numbers;
+}
+
+double NumberBetween(const JsonFields& fields, const std::string& key, double least, double most) {
+  const double number = fields.Number(key);
+  if (number >= least && number <= most) return number;
+  fields.Fail(key, fmt::format("holds {}, expected {} to {}", number, least, most));
+}
+
+double PositiveNumber(const JsonFields& fields, const std::string& key, double most) {
+  const double number = fields.Number(key);
+  if (number > 0 && number <= most) return number;
+  fields.Fail(key, fmt::format("holds {}, expected more than 0, at most {}", number, most));
+}
+
+double PositiveNumberOr(const JsonFields& fields, const std::string& key, double missing,
+                        double most) {
+  return fields.Has(key) ? PositiveNumber(fields, key, most) : missing;
+}
+
+int CountBetween(const JsonFields& fields, const std::string& key, int least, int most) {
+  const int count = fields.Count(key);
+  if (count >= least && count <= most) return count;
+  fields.Fail(key, fmt::format("holds {}, expected {} to {}", count, least, most));
 }
 
 Pose ReadPose(const JsonFields& fields) {
   fields.ExpectOnly({"position", "quaternion"});
   Pose pose;
-  if (fields.Has("position")) pose.position = ThreeNumbers(fields, "position");
+  if (fields.Has("position")) pose.position = ThreeNumbers(fields, "position", kFarthest);
   if (!fields.Has("quaternion")) return pose;
-  const std::vector<double> q = fields.Numbers("quaternion");
+  constexpr double kLeast = 1e-3, kMost = 1e3;
+  const std::vector<double> q = NumbersBetween(fields, "quaternion", -kMost, kMost);
   if (q.size() != 4) fields.Fail("quaternion", "must be four numbers, w x y z");
-  constexpr double kLeast = 1e-3;
   if (!(Eigen::Map<const Eigen::Vector4d>(q.data()).norm() > kLeast)) {
     fields.Fail("quaternion", "must not be zero");
   }
@@ -44,10 +68,12 @@ Pose ReadPose(const JsonFields& fields) {
 Box ReadBox(const JsonFields& fields) {
   fields.ExpectOnly({"position", "size", "yaw"});
   Box box;
-  box.pose.position = ThreeNumbers(fields, "position");
-  box.half = ThreeNumbers(fields, "size") / 2;
+  box.pose.position = ThreeNumbers(fields, "position", kFarthest);
+  box.half = ThreeNumbers(fields, "size", 2 * kFarthest) / 2;
   if (!(box.half.minCoeff() > 0)) fields.Fail("size", "must be above 0");
-  if (fields.Has("yaw")) box.pose.orientation = Yaw(Radians(FiniteNumber(fields, "yaw")));
+  if (fields.Has("yaw")) {
+    box.pose.orientation = Yaw(Radians(NumberBetween(fields, "yaw", -kTurn, kTurn)));
+  }
   return box;
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "rollout/pose.h"
 #include "twin/json_fields.h"
@@ -17,11 +18,19 @@ struct Box {
   Eigen::Vector3d half = Eigen::Vector3d::Zero();  // m, of its edges
 };
 
-// Each throws Error unless the key holds that; those with a default take it where the key is
-// missing.
-double FiniteNumber(const JsonFields& fields, const std::string& key);
-double PositiveNumber(const JsonFields& fields, const std::string& key, double missing);
-Eigen::Vector3d ThreeNumbers(const JsonFields& fields, const std::string& key);
+// A length, or a coordinate from 0, is at most this; degrees are a turn to either side.
+constexpr double kFarthest = 1000;  // m
+constexpr double kTurn = 360;
+
+// Each throws Error unless the key holds that, within the bounds; those with a default take it
+// where the key is missing.
+double NumberBetween(const JsonFields& fields, const std::string& key, double least, double most);
+std::vector<double> NumbersBetween(const JsonFields& fields, const std::string& key, double least,
+                                   double most);
+double PositiveNumber(const JsonFields& fields, const std::string& key, double most);
+double PositiveNumberOr(const JsonFields& fields, const std::string& key, double missing,
+                        double most);
+int CountBetween(const JsonFields& fields, const std::string& key, int least, int most);
 Pose ReadPose(const JsonFields& fields);  // keys position, quaternion: both optional
 Box ReadBox(const JsonFields& fields);    // keys position, size, yaw (degrees, optional)
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/json_fields.h"
 #include "twin/quote.h"
@@ -40,7 +39,7 @@ RecordingEntry ReadEntry(const JsonFields& fields, const fs::path& folder) {
 
 std::vector<RecordingEntry> ReadDataset(const fs::path& folder) {
   const std::string path = (folder / "dataset.json").string();
-  const JsonFields fields(ReadFile(path), path);
+  const JsonFields fields = ReadJsonFile(path);
   const bool published_l1 = fields.Has("published_l1_m");
   std::vector<RecordingEntry> entries;
   for (const JsonFields& recording : fields.Objects("recordings")) {

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "twin/atomic_file.h"
 #include "twin/error.h"
-#include "twin/parse_json.h"
+#include "twin/json_text.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -17,8 +18,8 @@ using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-JsonFields::JsonFields(const std::string& text, std::string where) : where_(std::move(where)) {
-  object_ = ParseJson(text, where_);
+JsonFields::JsonFields(const std::string& text, std::string where)
+    : object_(ParseJson(text, where)), where_(std::move(where)) {
   if (!object_.is_object()) throw Error(fmt::format("{}: is not a JSON object", where_));
 }
 
@@ -118,8 +119,11 @@ const Json& JsonFields::Get(const std::string& key) const {
 }
 
 void JsonFields::FailKind(const std::string& key, const std::string& expected) const {
-  const std::string value = Get(key).dump(-1, ' ', true, Json::error_handler_t::replace);
-  Fail(key, fmt::format("holds {}, expected {}", Quote(value), expected));
+  Fail(key, fmt::format("holds {}, expected {}", QuoteJson(Get(key)), expected));
+}
+
+JsonFields ReadJsonFile(const std::string& path) {
+  return JsonFields(ReadFile(path, JsonLimits::kBytes), path);
 }
 
 }  // namespace physpring

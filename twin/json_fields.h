@@ -15,7 +15,7 @@ namespace physpring {
 
 class JsonFields {
  public:
-  // Parses `text`, which must be one object, nested at most 32 deep. Messages begin with `where`.
+  // Parses `text`, which must be one object (see json_text.h). Messages begin with `where`.
   JsonFields(const std::string& text, std::string where);
 
   bool Has(const std::string& key) const { return object_.contains(key); }
@@ -34,7 +34,8 @@ class JsonFields {
   // Throws Error if there is a key that is not in `keys`.
   void ExpectOnly(std::initializer_list<std::string_view> keys) const;
 
-  // The object as compact JSON, keys in their order.
+  // The object with its keys in their order, also as compact text.
+  const nlohmann::ordered_json& json() const { return object_; }
   std::string Dump() const { return object_.dump(); }
 
   // Throws Error: "WHERE: key 'KEY' WHAT".
@@ -51,6 +52,9 @@ class JsonFields {
   std::string where_;
   std::string parent_;  // before the key in messages: "recordings[3]."
 };
+
+// The one object that a file of JSON holds.
+JsonFields ReadJsonFile(const std::string& path);
 
 }  // namespace physpring
 

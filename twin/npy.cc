@@ -5,6 +5,7 @@
 
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -15,6 +16,8 @@ namespace physpring {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::size_t kMostDimensions = 32;  // as numpy's
+constexpr std::size_t kLargestExtent = std::numeric_limits<std::int32_t>::max();
 
 // Reads the dictionary literal that numpy writes, for example
 //   {'descr': '<f4', 'fortran_order': False, 'shape': (120, 76, 3), }
@@ -104,6 +107,12 @@ class DictionaryParser {
       const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), extent);
       if (error != std::errc()) Fail();
       rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+      if (extent > kLargestExtent || shape.size() == kMostDimensions) {
+        throw Error(fmt::format(
+            "has a shape with {}, expected up to {} extents below 2^31",
+            extent > kLargestExtent ? fmt::format("the extent {}", extent) : "more dimensions",
+            kMostDimensions));
+      }
       shape.push_back(extent);
       if (!Accept(",")) {
         if (shape.size() == 1) Fail();  // (4) is a number, (4,) a shape

@@ -31,7 +31,8 @@ constexpr std::size_t kNpyPreamble = 12;
 std::size_t NpyHeaderLength(std::string_view preamble);
 
 // Reads preamble and header. Throws Error (without a path) when it is malformed, or describes what
-// is not read: unknown types, big endian, Fortran order with more than one dimension.
+// is not read: unknown types, big endian, Fortran order with more than one dimension, more than 32
+// dimensions, an extent of 2^31 or more.
 NpyHeader ParseNpyHeader(std::string_view bytes);
 
 // Preamble and header, version 1, padded so that the values start at a multiple of 64 bytes.

@@ -18,13 +18,14 @@
 namespace physpring {
 namespace {
 
-constexpr std::size_t kLargestContent = std::size_t{1} << 32;  // bytes of all arrays together
-constexpr std::size_t kLargestDeflateRatio = 1032;             // the format's limit: RFC 1951
-// All numbers together as they will be held, 8 bytes each: so many bytes, or so many times the
-// file.
-constexpr std::size_t kSmallContent = std::size_t{1} << 28, kHeldPerByte = 64;
+// What all arrays together may take as doubles, in bytes: whoever reads them holds them so, and a
+// small type becomes eight times as large.
+constexpr std::size_t kLargestContent = std::size_t{1} << 32;
+// A small file stands for no more than this and this many times its size: zeros that are packed a
+// thousandfold are a trap.
+constexpr std::size_t kLargestOfSmallFile = std::size_t{1} << 28, kLargestUnpacking = 64;
+constexpr std::size_t kLargestDeflateRatio = 1032;  // the format's limit: RFC 1951
 constexpr std::size_t kLargestNpyHeader = 1 << 16;  // bytes
-constexpr std::size_t kMostOfNothing = 1 << 20;     // the extents of an array without values
 
 struct CloseZip {
   void operator()(zip_t* archive) const { zip_discard(archive); }
@@ -48,9 +49,10 @@ class ZipError {
   zip_error_t error_;
 };
 
-// So many numbers in so many bytes, once they are doubles.
-std::size_t HeldBytes(std::size_t count, std::size_t bytes) {
-  return std::max(bytes, count * sizeof(double));
+// What the arrays of a file of so many bytes may hold, in bytes.
+std::size_t LargestContent(std::size_t file) {
+  return std::min(kLargestContent,
+                  kLargestOfSmallFile + kLargestUnpacking * std::min(file, kLargestContent));
 }
 
 // One member while it is read. Its messages have no path; ReadNpz puts it in front.
@@ -70,8 +72,8 @@ class MemberReader {
     if (!member_) throw Error(zip_strerror(archive));
   }
 
-  // `most`: bytes that its values may take, as they will be held.
-  NpzArray Read(std::size_t most) {
+  // `left`: of what all arrays may hold; less afterwards.
+  NpzArray Read(std::size_t* left) {
     std::string header(std::min<std::size_t>(size(), kNpyPreamble), '\0');
     ReadBytes(header.data(), header.size());
     const std::size_t header_length = NpyHeaderLength(header);
@@ -91,22 +93,19 @@ class MemberReader {
       throw Error(fmt::format("has the shape {} of type '{}' but {} bytes of values",
                               FormatShape(array.shape), array.type, expected));
     }
-    if (HeldBytes(*count, size()) > most) {
-      throw Error("brings the numbers of the file to more than can be held");
+    if (*count > *left / sizeof(double)) {
+      throw Error(fmt::format("has {} values, more than are read of a file of this size", *count));
     }
-    if (*count == 0 && !array.shape.empty() &&
-        *std::max_element(array.shape.begin(), array.shape.end()) > kMostOfNothing) {
-      throw Error(fmt::format("has the shape {}, which holds nothing", FormatShape(array.shape)));
-    }
+    *left -= *count * sizeof(double);
     array.data.resize(expected);
     ReadBytes(array.data.data(), expected);
     ExpectEnd();
     return array;
   }
 
+ private:
   std::size_t size() const { return stat_.size; }
 
- private:
   void ReadBytes(void* bytes, std::size_t count) {
     const zip_int64_t got = zip_fread(member_.get(), bytes, count);
     if (got < 0) throw Error(fmt::format("is damaged: {}", zip_file_strerror(member_.get())));
@@ -125,19 +124,16 @@ class MemberReader {
   ZipHandle<zip_file_t> member_;
 };
 
-void ReadMember(zip_t* archive, zip_uint64_t index, std::size_t most, Npz& arrays,
-                std::size_t& total) {
+void ReadMember(zip_t* archive, zip_uint64_t index, std::size_t* left, Npz* arrays) {
   const char* const raw_name = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
   const std::string_view file_name = raw_name ? raw_name : "";
   if (!file_name.ends_with(".npy")) {
     throw Error(fmt::format("member {} is not a .npy array", Quote(file_name)));
   }
   const std::string name(file_name.substr(0, file_name.size() - 4));
-  if (arrays.contains(name)) throw Error(fmt::format("array {} is there twice", Quote(name)));
+  if (arrays->contains(name)) throw Error(fmt::format("array {} is there twice", Quote(name)));
   try {
-    MemberReader member(archive, index);
-    arrays.emplace(name, member.Read(most - total));
-    total += HeldBytes(arrays.at(name).size(), member.size());
+    arrays->emplace(name, MemberReader(archive, index).Read(left));
   } catch (const Error& error) {
     throw Error(fmt::format("array {} {}", Quote(name), error.what()));
   }
@@ -163,7 +159,8 @@ std::string MemberBytes(const NpzArray& array) {
 }
 
 // Adds a member whose bytes must live until the archive is closed; false on failure.
-bool AddMember(zip_t* archive, const std::string& file_name, const std::string& bytes) {
+bool AddMember(zip_t* archive, const std::string& file_name, const std::string& bytes,
+               bool deflated) {
   zip_source_t* const source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
   if (!source) return false;
   const zip_int64_t added = zip_file_add(archive, file_name.c_str(), source, ZIP_FL_ENC_UTF_8);
@@ -175,7 +172,8 @@ bool AddMember(zip_t* archive, const std::string& file_name, const std::string& 
   constexpr zip_uint32_t kLevel = 6;
   const zip_uint64_t index = static_cast<zip_uint64_t>(added);
   return zip_file_set_dostime(archive, index, 0, kFirstOfJanuary1980, 0) == 0 &&
-         zip_set_file_compression(archive, index, ZIP_CM_DEFLATE, kLevel) == 0;
+         zip_set_file_compression(archive, index, deflated ? ZIP_CM_DEFLATE : ZIP_CM_STORE,
+                                  kLevel) == 0;
 }
 
 // The bytes that were written to `source`.
@@ -197,11 +195,9 @@ Npz ParseNpz(const std::string& bytes, const std::string& path) {
     const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
     if (count < 1) throw Error("holds no arrays");
     Npz arrays;
-    const std::size_t most =
-        std::min(kLargestContent, std::max(kSmallContent, kHeldPerByte * bytes.size()));
-    std::size_t total = 0;
+    std::size_t left = LargestContent(bytes.size());
     for (zip_int64_t i = 0; i < count; ++i) {
-      ReadMember(archive.get(), static_cast<zip_uint64_t>(i), most, arrays, total);
+      ReadMember(archive.get(), static_cast<zip_uint64_t>(i), &left, &arrays);
     }
     return arrays;
   } catch (const Error& error) {
@@ -220,6 +216,12 @@ std::string PackNpz(const Npz& arrays, const std::string& path) {
   ZipError error;
   const ZipHandle<zip_source_t> source(zip_source_buffer_create(nullptr, 0, 0, error.get()));
   if (!source) fail(error.text());
+  std::size_t content = 0;
+  for (const auto& [name, array] : arrays) content += array.size() * sizeof(double);
+  if (content > kLargestContent) {
+    fail(fmt::format("holds {} bytes as doubles, more than are read", content));
+  }
+  const bool deflated = content <= kLargestOfSmallFile;  // else it might be packed too well to read
   ZipHandle<zip_t> archive(zip_open_from_source(source.get(), ZIP_TRUNCATE, error.get()));
   if (!archive) fail(error.text());
   zip_source_keep(source.get());  // shared with the archive from here on
@@ -228,7 +230,9 @@ std::string PackNpz(const Npz& arrays, const std::string& path) {
   members.reserve(arrays.size());
   for (const auto& [name, array] : arrays) {
     members.push_back(MemberBytes(array));
-    if (!AddMember(archive.get(), name + ".npy", members.back())) fail(zip_strerror(archive.get()));
+    if (!AddMember(archive.get(), name + ".npy", members.back(), deflated)) {
+      fail(zip_strerror(archive.get()));
+    }
   }
   if (zip_close(archive.get()) != 0) fail(zip_strerror(archive.get()));
   archive.release();  // closed

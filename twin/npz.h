@@ -30,6 +30,7 @@ struct NpzArray {
   // Values as double, int or text. Throw Error (without a path) when the values have no such
   // meaning: ToInts takes whole numbers that fit, of any type; ToText bytes in one dimension.
   std::vector<double> ToDoubles() const;
+  void CopyDoubles(std::size_t first, std::size_t count, double* values) const;  // some of them
   std::vector<int> ToInts() const;
   std::string ToText() const;
 };
@@ -38,7 +39,9 @@ using Npz = std::map<std::string, NpzArray>;  // by name, without ".npy"
 
 // Throws Error (one line, beginning with the path) when the file is not readable, not a zip, cut
 // short, damaged (checksum), has a member that is not a .npy array, or an array of objects, of
-// Fortran order with more than one dimension, of big endian, or whose size and shape disagree.
+// Fortran order with more than one dimension, of big endian, or whose size and shape disagree. What
+// all arrays would take as doubles is counted before memory is taken for them: more than 4 GiB is
+// refused, and more than 256 MiB and 64 times the file.
 Npz ReadNpz(const std::string& path);
 
 // The same for a file already in memory; `path` only begins the messages.
@@ -46,7 +49,8 @@ Npz ParseNpz(const std::string& bytes, const std::string& path);
 
 // Writes atomically (temporary file in the same folder, fsync, rename, fsync of the folder). Equal
 // content gives equal bytes. Throws Error when the disk is full or the folder not writable; then a
-// file that was there before is untouched and no temporary file is left.
+// file that was there before is untouched and no temporary file is left. Arrays are deflated unless
+// they take more than 256 MiB as doubles.
 void WriteNpz(const Npz& arrays, const std::string& path);
 
 // The bytes that WriteNpz writes; `path` only begins the messages.

@@ -35,14 +35,12 @@ struct Half {
 };
 
 template <typename T>
-std::vector<double> Convert(const std::vector<unsigned char>& data) {
-  std::vector<double> values(data.size() / sizeof(T));
-  for (std::size_t i = 0; i < values.size(); ++i) {
+void Convert(const unsigned char* data, std::size_t count, double* values) {
+  for (std::size_t i = 0; i < count; ++i) {
     T value;
-    std::memcpy(&value, data.data() + i * sizeof(T), sizeof(T));
+    std::memcpy(&value, data + i * sizeof(T), sizeof(T));
     values[i] = static_cast<double>(value);
   }
-  return values;
 }
 
 template <typename T, typename Value>
@@ -77,17 +75,25 @@ NpzArray NpzArray::Text(const std::string& text) {
 }
 
 std::vector<double> NpzArray::ToDoubles() const {
-  if (type == "<f2") return Convert<Half>(data);
-  if (type == "<f4") return Convert<float>(data);
-  if (type == "<f8") return Convert<double>(data);
-  if (type == "|i1") return Convert<std::int8_t>(data);
-  if (type == "<i2") return Convert<std::int16_t>(data);
-  if (type == "<i4") return Convert<std::int32_t>(data);
-  if (type == "<i8") return Convert<std::int64_t>(data);
-  if (type == "|u1" || type == "|b1") return Convert<std::uint8_t>(data);
-  if (type == "<u2") return Convert<std::uint16_t>(data);
-  if (type == "<u4") return Convert<std::uint32_t>(data);
-  if (type == "<u8") return Convert<std::uint64_t>(data);
+  std::vector<double> values(size());
+  CopyDoubles(0, values.size(), values.data());
+  return values;
+}
+
+void NpzArray::CopyDoubles(std::size_t first, std::size_t count, double* values) const {
+  assert(first + count <= size());
+  const unsigned char* const from = data.data() + first * BytesOfType(type);
+  if (type == "<f2") return Convert<Half>(from, count, values);
+  if (type == "<f4") return Convert<float>(from, count, values);
+  if (type == "<f8") return Convert<double>(from, count, values);
+  if (type == "|i1") return Convert<std::int8_t>(from, count, values);
+  if (type == "<i2") return Convert<std::int16_t>(from, count, values);
+  if (type == "<i4") return Convert<std::int32_t>(from, count, values);
+  if (type == "<i8") return Convert<std::int64_t>(from, count, values);
+  if (type == "|u1" || type == "|b1") return Convert<std::uint8_t>(from, count, values);
+  if (type == "<u2") return Convert<std::uint16_t>(from, count, values);
+  if (type == "<u4") return Convert<std::uint32_t>(from, count, values);
+  if (type == "<u8") return Convert<std::uint64_t>(from, count, values);
   throw Error(fmt::format("has the type '{}', expected numbers", type));
 }
 

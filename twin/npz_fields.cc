@@ -14,6 +14,7 @@ namespace physpring {
 namespace {
 
 constexpr double kFarthest = 1000;  // m, of a coordinate from 0
+constexpr std::size_t kMostFrames = std::size_t{1} << 22;
 
 bool IsNumber(const std::string& extent) {
   return std::all_of(extent.begin(), extent.end(), [](unsigned char c) { return std::isdigit(c); });
@@ -40,17 +41,6 @@ std::string FormatIndex(std::size_t index, const std::vector<std::size_t>& shape
   return fmt::format("[{}]", fmt::join(place, ", "));
 }
 
-std::vector<Points> SplitFrames(const std::vector<double>& values, std::size_t frames,
-                                std::size_t points) {
-  std::vector<Points> split;
-  split.reserve(frames);
-  for (std::size_t t = 0; t < frames; ++t) {
-    split.emplace_back(Eigen::Map<const Points>(values.data() + t * points * 3, 3,
-                                                static_cast<Eigen::Index>(points)));
-  }
-  return split;
-}
-
 }  // namespace
 
 double NpzFields::Scalar(const std::string& name) { return FiniteNumbers(name, {})[0]; }
@@ -70,37 +60,60 @@ Eigen::MatrixXd NpzFields::Matrix(const std::string& name, const std::string& ro
 
 Points NpzFields::Positions(const std::string& name, const std::string& size) {
   const std::vector<double> values = FiniteNumbers(name, {size, "3"});
-  ExpectWithinReach(name, values);
+  ExpectWithinReach(name, values.data(), values.size(), 0);
   return Eigen::Map<const Points>(values.data(), 3, static_cast<Eigen::Index>(values.size() / 3));
 }
 
 std::vector<Points> NpzFields::FramesWithUnseen(const std::string& name, const std::string& size) {
-  const std::vector<double> values = Numbers(name, {"T", size, "3"});
-  const std::vector<std::size_t>& shape = Get(name).shape;
-  for (std::size_t i = 0; i < values.size(); i += 3) {
-    const auto is_nan = [](double value) { return std::isnan(value); };
-    const auto count = std::count_if(&values[i], &values[i] + 3, is_nan);
-    if (count == 3) continue;
-    if (count > 0) {
-      Fail(name, fmt::format("holds a point that is partly NaN at {}, expected all three "
-                             "coordinates, or three NaN for a point not seen",
-                             FormatIndex(i / 3, {shape[0], shape[1]})));
-    }
-    for (std::size_t k = i; k < i + 3; ++k) {
-      if (!std::isinf(values[k])) continue;
-      Fail(name, fmt::format("holds {} at {}, expected finite numbers, or NaN for a point not seen",
-                             values[k], FormatIndex(k, shape)));
-    }
-  }
-  ExpectWithinReach(name, values);
-  return SplitFrames(values, shape[0], shape[1]);
+  GetNumbers(name, {"T", size, "3"});
+  if (Extent(size) < 1) Fail(name, "has no points, expected at least one");
+  return SplitFrames(name, &NpzFields::ExpectFiniteOrUnseen);
 }
 
 std::vector<Points> NpzFields::Frames(const std::string& name, const std::string& size) {
-  const std::vector<double> values = FiniteNumbers(name, {"T", size, "3"});
-  ExpectWithinReach(name, values);
-  const std::vector<std::size_t>& shape = Get(name).shape;
-  return SplitFrames(values, shape[0], shape[1]);
+  GetNumbers(name, {"T", size, "3"});
+  return SplitFrames(name, &NpzFields::ExpectFinite);
+}
+
+std::vector<Points> NpzFields::SplitFrames(const std::string& name, CheckFrame check) const {
+  const NpzArray& array = Get(name);
+  const std::size_t frames = array.shape[0], numbers = 3 * array.shape[1];
+  if (frames > kMostFrames) {
+    Fail(name, fmt::format("has {} frames, expected at most {}", frames, kMostFrames));
+  }
+  std::vector<Points> split;
+  split.reserve(frames);
+  for (std::size_t t = 0; t < frames; ++t) {
+    Points& frame = split.emplace_back(3, static_cast<Eigen::Index>(array.shape[1]));
+    array.CopyDoubles(t * numbers, numbers, frame.data());
+    (this->*check)(name, frame, t);
+    ExpectWithinReach(name, frame.data(), numbers, t * numbers);
+  }
+  return split;
+}
+
+void NpzFields::ExpectFinite(const std::string& name, const Points& frame, std::size_t t) const {
+  const auto numbers = static_cast<std::size_t>(frame.size());
+  ExpectFinite(name, frame.data(), numbers, t * numbers);
+}
+
+void NpzFields::ExpectFiniteOrUnseen(const std::string& name, const Points& frame,
+                                     std::size_t t) const {
+  for (Eigen::Index i = 0; i < frame.cols(); ++i) {
+    const auto count = frame.col(i).array().isNaN().count();
+    if (count == 3) continue;
+    if (count > 0) {
+      Fail(name, fmt::format("holds a point that is partly NaN at [{}, {}], expected all three "
+                             "coordinates, or three NaN for a point not seen",
+                             t, i));
+    }
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      if (!std::isinf(frame(k, i))) continue;
+      Fail(name, fmt::format("holds {} at [{}, {}, {}], expected finite numbers, or NaN for a "
+                             "point not seen",
+                             frame(k, i), t, i, k));
+    }
+  }
 }
 
 std::vector<int> NpzFields::Ints(const std::string& name, const Extents& shape) {
@@ -153,28 +166,35 @@ const NpzArray& NpzFields::GetOfShape(const std::string& name, const Extents& sh
   return array;
 }
 
-std::vector<double> NpzFields::Numbers(const std::string& name, const Extents& shape) {
+const NpzArray& NpzFields::GetNumbers(const std::string& name, const Extents& shape) {
   const NpzArray& array = GetOfShape(name, shape);
   if (array.type == "|b1") Fail(name, "has the type '|b1', expected numbers");
-  return array.ToDoubles();
+  return array;
 }
 
 std::vector<double> NpzFields::FiniteNumbers(const std::string& name, const Extents& shape) {
-  std::vector<double> values = Numbers(name, shape);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i])) continue;
-    const std::string place = shape.empty() ? "" : " at " + FormatIndex(i, Get(name).shape);
-    Fail(name, fmt::format("holds {}{}, expected finite numbers", values[i], place));
-  }
+  std::vector<double> values = GetNumbers(name, shape).ToDoubles();
+  ExpectFinite(name, values.data(), values.size(), 0);
   return values;
 }
 
-void NpzFields::ExpectWithinReach(const std::string& name,
-                                  const std::vector<double>& coordinates) const {
+void NpzFields::ExpectFinite(const std::string& name, const double* values, std::size_t count,
+                             std::size_t first) const {
+  const double* const end = values + count;
+  const double* const bad = std::find_if(values, end, [](double x) { return !std::isfinite(x); });
+  if (bad == end) return;
+  const std::vector<std::size_t>& shape = Get(name).shape;
+  const std::size_t index = first + static_cast<std::size_t>(bad - values);
+  const std::string place = shape.empty() ? "" : " at " + FormatIndex(index, shape);
+  Fail(name, fmt::format("holds {}{}, expected finite numbers", *bad, place));
+}
+
+void NpzFields::ExpectWithinReach(const std::string& name, const double* coordinates,
+                                  std::size_t count, std::size_t first) const {
   const auto is_far = [](double value) { return std::abs(value) > kFarthest; };
-  const auto far = std::find_if(coordinates.begin(), coordinates.end(), is_far);
-  if (far == coordinates.end()) return;
-  const auto place = static_cast<std::size_t>(far - coordinates.begin());
+  const double* const far = std::find_if(coordinates, coordinates + count, is_far);
+  if (far == coordinates + count) return;
+  const std::size_t place = first + static_cast<std::size_t>(far - coordinates);
   Fail(name, fmt::format("holds {} at {}, expected coordinates within {} m; NaN stands for a point "
                          "that is not seen",
                          *far, FormatIndex(place, Get(name).shape), kFarthest));

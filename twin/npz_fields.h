@@ -40,9 +40,10 @@ class NpzFields {
   // overflows in squares.
   Points Positions(const std::string& name, const std::string& size);
 
-  // (T, size, 3) as T frames of 3 x size. Points may be NaN in all three coordinates, not in some.
+  // (T, size, 3) as T frames of 3 x size, at most 2^22 of them. There are one or more points, which
+  // may be NaN in all three coordinates, not in some.
   std::vector<Points> FramesWithUnseen(const std::string& name, const std::string& size);
-  // The same, all finite.
+  // The same, all finite; there may be no points.
   std::vector<Points> Frames(const std::string& name, const std::string& size);
 
   // Whole numbers, C order.
@@ -58,9 +59,18 @@ class NpzFields {
  private:
   const NpzArray& Get(const std::string& name) const;
   const NpzArray& GetOfShape(const std::string& name, const Extents& shape);
-  std::vector<double> Numbers(const std::string& name, const Extents& shape);
+  const NpzArray& GetNumbers(const std::string& name, const Extents& shape);
   std::vector<double> FiniteNumbers(const std::string& name, const Extents& shape);
-  void ExpectWithinReach(const std::string& name, const std::vector<double>& coordinates) const;
+  // Frame by frame, so that no second copy of all is made; `check` sees a frame and its number.
+  using CheckFrame = void (NpzFields::*)(const std::string&, const Points&, std::size_t) const;
+  std::vector<Points> SplitFrames(const std::string& name, CheckFrame check) const;
+  void ExpectFinite(const std::string& name, const Points& frame, std::size_t t) const;
+  void ExpectFiniteOrUnseen(const std::string& name, const Points& frame, std::size_t t) const;
+  // `first`: the flat index of the first of these values in the array.
+  void ExpectFinite(const std::string& name, const double* values, std::size_t count,
+                    std::size_t first) const;
+  void ExpectWithinReach(const std::string& name, const double* coordinates, std::size_t count,
+                         std::size_t first) const;
 
   const Npz& arrays_;
   std::string path_;

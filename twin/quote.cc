@@ -3,11 +3,13 @@
 
 namespace physpring {
 
-std::string Quote(std::string_view text) {
+std::string Quote(std::string_view text) { return Shorten(text).insert(0, 1, '\'') + '\''; }
+
+std::string Shorten(std::string_view text) {
   constexpr std::size_t kLongest = 60;
-  std::string quoted = "'";
-  for (const char c : text.substr(0, kLongest)) quoted += c >= ' ' && c <= '~' ? c : '?';
-  return quoted + (text.size() > kLongest ? "...'" : "'");
+  std::string shortened;
+  for (const char c : text.substr(0, kLongest)) shortened += c >= ' ' && c <= '~' ? c : '?';
+  return shortened + (text.size() > kLongest ? "..." : "");
 }
 
 }  // namespace physpring

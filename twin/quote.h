@@ -11,6 +11,9 @@ namespace physpring {
 // characters and bytes beyond ASCII are shown as '?', and a long text is cut.
 std::string Quote(std::string_view text);
 
+// The same without quotes: for numbers and JSON, which show where they begin and end.
+std::string Shorten(std::string_view text);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_QUOTE_H_

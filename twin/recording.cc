@@ -39,15 +39,8 @@ void ExpectKnownArrays(const Npz& arrays, const NpzFields& fields) {
   }
 }
 
-std::vector<Points> ReadFrames(NpzFields& fields, const std::string& name,
-                               const std::string& size) {
-  std::vector<Points> frames = fields.FramesWithUnseen(name, size);
-  if (fields.Extent(size) < 1) fields.Fail(name, "has no points, expected at least one");
-  return frames;
-}
-
 void ReadMeasured(NpzFields& fields, Recording& recording) {
-  recording.points = ReadFrames(fields, "points", "N");
+  recording.points = fields.FramesWithUnseen("points", "N");
   if (fields.Extent("T") < 2) fields.Fail("points", "has fewer than 2 frames");
   if (!recording.points[0].array().isFinite().any()) {
     fields.Fail("points", "has nothing seen in frame 0, which a motion starts from");
@@ -59,8 +52,8 @@ void ReadMeasured(NpzFields& fields, Recording& recording) {
     }
   }
   recording.controllers = fields.Frames("controllers", "C");
-  if (fields.Has("surface")) recording.surface = ReadFrames(fields, "surface", "S");
-  if (fields.Has("track")) recording.track = ReadFrames(fields, "track", "K");
+  if (fields.Has("surface")) recording.surface = fields.FramesWithUnseen("surface", "S");
+  if (fields.Has("track")) recording.track = fields.FramesWithUnseen("track", "K");
 }
 
 double ReadBetween(NpzFields& fields, const std::string& name, double least, double most) {
@@ -200,7 +193,8 @@ void Check(const std::string& path, bool velocity_given, Recording& recording) {
   }
 }
 
-Recording ParseRecording(const Npz& arrays, const std::string& path) {
+// All that the arrays say.
+Recording ReadArrays(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
   if (arrays.contains("meta") && !arrays.contains("points"))
     fields.Fail("is a twin, not a recording");
@@ -211,9 +205,18 @@ Recording ParseRecording(const Npz& arrays, const std::string& path) {
   ReadConstants(fields, path, recording);
   ReadParticles(fields, recording);
   SetStart(fields, path, recording);
+  return recording;
+}
+
+}  // namespace
+
+Recording ParseRecording(const Npz& arrays, const std::string& path) {
+  Recording recording = ReadArrays(arrays, path);
   Check(path, arrays.contains("velocity"), recording);
   return recording;
 }
+
+namespace {
 
 // (T, columns, 3)
 NpzArray StoreFrames(const std::vector<Points>& frames) {
@@ -257,9 +260,15 @@ Npz StoreRecording(const Recording& recording) {
 }  // namespace
 
 Recording ReadRecording(const std::string& path) {
-  const std::string bytes = ReadFile(path);
-  Recording recording = ParseRecording(ParseNpz(bytes, path), path);
-  recording.hash = HashBytes(bytes);
+  std::string bytes = ReadFile(path);
+  const std::string hash = HashBytes(bytes);
+  Npz arrays = ParseNpz(bytes, path);
+  bytes = std::string();  // of a large file no more is held than is needed
+  Recording recording = ReadArrays(arrays, path);
+  const bool velocity_given = arrays.contains("velocity");
+  arrays.clear();
+  Check(path, velocity_given, recording);
+  recording.hash = hash;
   return recording;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/npz.h"
 #include "twin/points.h"
 
 namespace physpring {
@@ -61,6 +62,10 @@ struct Recording {
 // unreadable or truncated file, missing array, wrong shape or type, NaN where none may be.
 // Arrays that the format does not define are an error, too.
 Recording ReadRecording(const std::string& path);
+
+// The same for arrays already in memory, without the hash; `path` gives the name and begins
+// messages.
+Recording ParseRecording(const Npz& arrays, const std::string& path);
 
 // Writes `recording` to `path` atomically (temporary file, fsync, rename), deflated; positions and
 // velocities in float32, so that ReadRecording gives the same recording back up to float32. Throws

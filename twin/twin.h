@@ -63,6 +63,9 @@ struct Twin {
 // written, bit for bit.
 Twin ReadTwin(const std::string& path);
 
+// The same for arrays already in memory; `path` begins the messages.
+Twin ParseTwin(const Npz& arrays, const std::string& path);
+
 // Writes atomically: the file at `path` is the old one or the new one, whatever happens. Throws
 // Error for a twin that ReadTwin would refuse (a level without springs or without
 // substeps_per_second, an assignment that is not onto, ...), and then writes nothing.

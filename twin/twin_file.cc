@@ -100,7 +100,6 @@ std::string StoreMeta(const Twin& twin, const std::string& path) {
                           {"hash", recording.hash},
                           {"train_frames", recording.train_frames}});
   }
-  // checked here, then taken over with its keys in their order
   const JsonFields options(twin.options_json, path + ": options");
   const Json meta = {{"format", kFormat},
                      {"version", kVersion},
@@ -114,7 +113,7 @@ std::string StoreMeta(const Twin& twin, const std::string& path) {
                      {"controller_velocity", twin.controller_velocity},
                      {"recordings", recordings},
                      {"seed", twin.seed},
-                     {"options", Json::parse(options.Dump())}};
+                     {"options", options.json()}};
   // a file name need not be UTF-8
   return meta.dump(1, ' ', false, Json::error_handler_t::replace);
 }
@@ -279,6 +278,8 @@ LinearPredictor ReadLinear(NpzFields* fields, int points, int controllers) {
   return linear;
 }
 
+}  // namespace
+
 Twin ParseTwin(const Npz& arrays, const std::string& path) {
   NpzFields fields(arrays, path);
   if (!arrays.contains("meta") && arrays.contains("points"))
@@ -318,8 +319,6 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   }
   return twin;
 }
-
-}  // namespace
 
 Twin ReadTwin(const std::string& path) { return ParseTwin(ReadNpz(path), path); }
 

@@ -34,12 +34,49 @@ void PackArray(const void* data, std::size_t bytes, const char* type, const std:
   packer->pack(shape);
 }
 
+// Counts what a message holds before anything is made of it: an object takes 24 bytes, and the
+// shortest one only 1 in the message.
+class ItemCounter : public msgpack::null_visitor {
+ public:
+  bool start_array(std::uint32_t items) { return Enter(items); }
+  bool start_map(std::uint32_t items) { return Enter(2 * std::uint64_t{items}); }
+  bool end_array() { return Leave(); }
+  bool end_map() { return Leave(); }
+  void parse_error(std::size_t, std::size_t) { malformed_ = true; }
+  void insufficient_bytes(std::size_t, std::size_t) { malformed_ = true; }
+
+  bool malformed() const { return malformed_; }
+
+ private:
+  static constexpr std::uint64_t kMostItems = 1 << 16;
+  static constexpr int kDeepest = 16;
+
+  bool Enter(std::uint64_t items) {
+    items_ += items;
+    ++depth_;
+    return items_ <= kMostItems && depth_ <= kDeepest;
+  }
+  bool Leave() {
+    --depth_;
+    return true;
+  }
+
+  std::uint64_t items_ = 0;
+  int depth_ = 0;
+  bool malformed_ = false;
+};
+
+// Objects refer to `message`, which must live as long.
 msgpack::object_handle Unpack(std::string_view message) {
-  constexpr std::size_t kMostItems = 1 << 20, kMostBytes = 1 << 28, kDeepest = 16;
-  const msgpack::unpack_limit limit(kMostItems, kMostItems, kMostBytes, kMostBytes, kMostBytes,
-                                    kDeepest);
+  ItemCounter counter;
+  std::size_t end = 0;
+  if (!msgpack::parse(message.data(), message.size(), end, counter)) {
+    throw PolicyError(counter.malformed() ? "the policy server's message is not msgpack"
+                                          : "the policy server's message has too many items");
+  }
+  const auto refer = [](msgpack::type::object_type, std::size_t, void*) { return true; };
   try {
-    return msgpack::unpack(message.data(), message.size(), nullptr, nullptr, limit);
+    return msgpack::unpack(message.data(), message.size(), refer);
   } catch (const msgpack::unpack_error& error) {
     throw PolicyError(fmt::format("the policy server's message is not msgpack: {}", error.what()));
   }
@@ -73,9 +110,11 @@ std::vector<double> Numbers(std::string_view bytes) {
   return numbers;
 }
 
+// Of an array of up to 4 dimensions; none for all else.
 std::vector<std::uint64_t> Shape(const msgpack::object& object) {
+  constexpr std::uint32_t kMostDimensions = 4;
   std::vector<std::uint64_t> shape;
-  if (object.type != msgpack::type::ARRAY) return shape;
+  if (object.type != msgpack::type::ARRAY || object.via.array.size > kMostDimensions) return shape;
   for (std::uint32_t i = 0; i < object.via.array.size; ++i) {
     const msgpack::object& extent = object.via.array.ptr[i];
     if (extent.type != msgpack::type::POSITIVE_INTEGER) return {};

@@ -71,7 +71,7 @@ class Connection {
  public:
   Connection(const Address& address, const ServerPatience& patience)
       : name_(address.host + ":" + address.port), patience_(patience), stream_(io_) {
-    constexpr std::size_t kMostBytes = 1 << 28, kWriteBytes = 1 << 16;
+    constexpr std::size_t kMostBytes = 1 << 24, kWriteBytes = 1 << 16;
     Connect(address);
     stream_.binary(true);
     stream_.auto_fragment(false);

@@ -67,6 +67,18 @@ TEST_F(Diagnose, FailsBeforeTheWorkWhereItCannotWrite) {
   EXPECT_TRUE(FailsWith(Run(output_, output_ + "/report.json"), "two outputs have this name"));
 }
 
+TEST_F(Diagnose, RefusesADeepCheckpoint) {
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  const int unfinished = 0;
+  std::filesystem::create_directory(output_);
+  WriteNpz({{"of", NpzArray::Text(deep)}, {"finished", NpzArray::Ints({}, &unfinished)}},
+           output_ + "/checkpoint.npz");
+  const ProgramResult result =
+      RunProgram({"diagnose", twin_, swing_, "--heldout", held_, "-o", output_, "--resume"});
+  EXPECT_TRUE(FailsWith(result, "checkpoint.npz: array 'of': is nested more than 32 deep"))
+      << result.errors;
+}
+
 TEST_F(Diagnose, IsNotJudgedByWhatItFits) {
   const std::string copy = folder_.File("copy.npz");
   WriteFileAtomically(copy, ReadFile(swing_));

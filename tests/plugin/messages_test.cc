@@ -84,6 +84,15 @@ TEST(Messages, NameAttributeAndValue) {
   }
 }
 
+// Such text, parsed without a bound, overflows the stack of the process that MuJoCo runs in.
+TEST(Messages, DeepEffectsAreRefused) {
+  EXPECT_THAT(Refusal(WithAttribute("effects", std::string(100000, '['))),
+              HasSubstr("attribute 'effects': is nested more than 32 deep"));
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  EXPECT_THAT(Refusal(WithAttribute("effects", deep)),
+              HasSubstr("attribute 'effects': is nested more than 32 deep"));
+}
+
 TEST(Messages, UnknownAttributeIsRefusedByMujoco) {
   EXPECT_THROW(CompileMjcf(WithAttribute("stifness", "1")), Error);
 }

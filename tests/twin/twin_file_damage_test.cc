@@ -128,6 +128,8 @@ TEST_F(TwinFile, RefusesWhatDisagrees) {
       {"meta", NpzArray::Text("[1]"), "array 'meta': is not a JSON object"},
       {"meta", NpzArray::Text(std::string(100000, '[')), "is nested more than 32 deep"},
       {"meta", Scalar(1), "array 'meta' has the type '<f8'"},
+      {"level0/effects", NpzArray::Text(std::string(100000, '[') + std::string(100000, ']')),
+       "level 0: array 'effects': is nested more than 32 deep"},
   };
   const Npz sound = arrays_;
   for (const Case& c : cases) {

@@ -12,6 +12,7 @@ namespace {
 // The median of |x| of a normal deviate, and the deviation of a third difference of noise 1.
 const double kThirdDifference = 0.6745 * std::sqrt(20.0);
 constexpr int kMostNoiseFrames = 400;  // that the noise is estimated from
+constexpr std::size_t kMostNoiseValues = 1000000;
 
 double RootMeanSquareMotion(const std::vector<Points>& frames) {
   double sum = 0;
@@ -48,7 +49,9 @@ double Median(std::vector<double> values) { return Quantile(0.5, std::move(value
 
 double MeasurementNoise(const std::vector<Points>& frames) {
   std::vector<double> differences;
-  const std::size_t step = 1 + frames.size() / kMostNoiseFrames;
+  const std::size_t values = frames.size() * static_cast<std::size_t>(frames[0].size());
+  const std::size_t step =
+      1 + std::max(frames.size() / kMostNoiseFrames, values / kMostNoiseValues);
   for (std::size_t t = 3; t < frames.size(); t += step) {
     const Points third = frames[t] - 3 * frames[t - 1] + 3 * frames[t - 2] - frames[t - 3];
     for (double x : third.reshaped()) {

@@ -16,7 +16,8 @@ namespace {
 constexpr int kComparedWith = 6, kFewestCompared = 4;
 constexpr double kSpacings = 1.5;  // a jump is larger than so many distances to the nearest point
 constexpr int kKeepsVelocity = 3;  // frames
-constexpr double kTypical = 15;    // a jump is and than so many times the typical difference
+constexpr double kTypical = 15;    // and than so many times the typical difference
+constexpr std::size_t kTypicalOf = 1000000;  // differences, or fewer
 constexpr double kGapMatters = 2;  // a point that was off or unseen may move by so many limits
 constexpr std::size_t kNamedTracks = 3;  // tracks that the line names
 constexpr double kNothingExplains = std::numeric_limits<double>::infinity();
@@ -78,7 +79,8 @@ class OutlierSearch {
 
 double OutlierSearch::TypicalDifference() const {
   std::vector<double> differences;
-  for (int frame = 2; frame < static_cast<int>(frames_.size()); ++frame) {
+  const auto stride = static_cast<int>(1 + frames_.size() * near_.size() / kTypicalOf);
+  for (int frame = 2; frame < static_cast<int>(frames_.size()); frame += stride) {
     for (int i = 0; i < static_cast<int>(near_.size()); ++i) {
       if (!Seen(frame - 2, i) || !Seen(frame - 1, i) || !Seen(frame, i)) continue;
       const double difference = Difference(i, At(i, frame - 1, frame - 2), frame);

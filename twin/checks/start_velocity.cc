@@ -18,6 +18,7 @@ constexpr double kFits = 1.3;          // its residuals are no more than so many
 constexpr double kInMotion = 0.6;      // v makes so much of the second step
 constexpr double kSignificant = 2;     // and is so many times its standard error
 constexpr double kSame = 0.5;          // of v there is over half the time
+constexpr double kRounding = 1e-6;     // of the object's size: a smaller step is none
 constexpr double kFarInterior = 0.25;  // of the object's size
 constexpr int kMoveAlike = 4;
 
@@ -121,7 +122,8 @@ double Interpolate(const NeighbourSearch& search, const Points& velocities,
 
 // Whether v makes most of the second step, beyond what noise does, and is about the same over half
 // the time. A start from rest that gets faster and faster gives a much smaller v there.
-bool StartsInMotion(const Recording& recording, const Parabolas& parabolas, double noise) {
+bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
+                    const MotionScale& scale) {
   const int frames = static_cast<int>(parabolas.weights.size());
   const Parabolas half = LayParabolas(recording, std::max(kFewestParabolaFrames, (frames + 1) / 2));
   double from_velocity = 0, from_half = 0, second_step = 0, count = 0;
@@ -133,10 +135,11 @@ bool StartsInMotion(const Recording& recording, const Parabolas& parabolas, doub
     second_step += (recording.points[2].col(i) - recording.points[1].col(i)).squaredNorm();
     ++count;
   }
-  const double variance = 3 * noise * noise * count;  // of noise along three axes
+  const double variance = 3 * scale.noise * scale.noise * count;  // of noise along three axes
   const double error = variance * parabolas.weights.squaredNorm() / std::pow(recording.fps, 2);
   const double step = std::max(second_step - 2 * variance, 0.0);
-  return from_velocity > kSignificant * kSignificant * error &&
+  return from_velocity > std::pow(kRounding * scale.size, 2) * count &&
+         from_velocity > kSignificant * kSignificant * error &&
          from_velocity > kInMotion * kInMotion * step && from_half > kSame * from_velocity;
 }
 
@@ -149,7 +152,7 @@ std::optional<StartVelocity> EstimateStartVelocity(const Recording& recording) {
   }
   const MotionScale scale = ScaleOf(recording);
   const Parabolas parabolas = LongestParabolas(recording, scale.noise);
-  if (!StartsInMotion(recording, parabolas, scale.noise)) return std::nullopt;
+  if (!StartsInMotion(recording, parabolas, scale)) return std::nullopt;
   const Known known = KnownVelocities(recording, parabolas.weights);
   StartVelocity start{Points::Zero(3, recording.particle_count()),
                       static_cast<int>(parabolas.weights.size()), true};

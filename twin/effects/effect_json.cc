@@ -7,7 +7,7 @@
 
 #include "twin/effects/registry.h"
 #include "twin/error.h"
-#include "twin/parse_json.h"
+#include "twin/json_text.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -19,7 +19,7 @@ EffectValues ReadEffect(const Json& json, const std::string& where) {
   if (!json.is_object() || json.size() != 2 || !json.contains("name") ||
       !json.contains("parameters") || !json["name"].is_string()) {
     throw Error(fmt::format("{}: holds {}, expected an object of name and parameters", where,
-                            Quote(json.dump())));
+                            QuoteJson(json)));
   }
   EffectValues effect{json["name"].get<std::string>(), {}};
   const Effect* const known = FindEffect(effect.name);
@@ -42,7 +42,7 @@ EffectValues ReadEffect(const Json& json, const std::string& where) {
     for (const Json& value : list) {
       if (!value.is_number()) {
         throw Error(fmt::format("{}: {} of effect {} is {}, expected a number", where,
-                                parameter.key, effect.name, Quote(value.dump())));
+                                parameter.key, effect.name, QuoteJson(value)));
       }
       values.push_back(value.get<double>());
     }

@@ -64,6 +64,10 @@ TEST(StartVelocity, OfAStartFromRestIsNone) {
   EXPECT_FALSE(EstimateStartVelocity(rope.Record()).has_value()) << "hangs at rest";
   rope.hand = [](double) { return Eigen::Vector3d(0, 0, 0); };
   EXPECT_FALSE(EstimateStartVelocity(rope.Record()).has_value()) << "never moves";
+  rope.noise = 0;
+  Recording still = rope.Record();
+  for (Points& frame : still.points) frame = still.points[0];
+  EXPECT_FALSE(EstimateStartVelocity(still).has_value()) << "nothing but rounding";
 }
 
 // Most of the body is far from the only point that is seen.
