@@ -232,6 +232,7 @@ std::optional<Verdict> RivalOf(const Inquiry& inquiry, const Attempt& attempt) {
   const std::vector<Verdict>& verdicts = attempt.search.verdicts;  // best first
   const auto rival = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& verdict) {
     return &verdict != &attempt.chosen() && !IsFreeForm(NewParametersOf(verdict)) &&
+           AtBounds(verdict.system.effects.back()).empty() &&
            IsNear(verdict.track.held, attempt.chosen().track.held);
   });
   if (rival == verdicts.end()) return {};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/checks/frame_times.h"
 #include "twin/checks/grasp.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/smooth_motion.h"
@@ -79,7 +80,7 @@ std::vector<std::string> FindOddities(const Recording& recording) {
   CheckGround(recording, scale, &lines);
   if (!lines.empty()) return lines;  // what follows takes these to be right
   for (const std::string& line : {OddGravity(recording, scale), FarGrasp(recording, scale),
-                                  ReleasedGrasp(recording, scale)}) {
+                                  ReleasedGrasp(recording, scale), OddFrameTimes(recording)}) {
     if (!line.empty()) lines.push_back(line);
   }
   return lines;

@@ -72,7 +72,12 @@ class DryFriction : public Effect {
   std::vector<EffectParameter> parameters() const override {
     using Spacing = EffectParameter::Spacing;
     return {{"slip_strain", 0, 1, 1, 1, Spacing::kLogarithmic},
-            {"creep_per_s", 0, 1e4, 1, 1, Spacing::kLogarithmic}};
+            {.key = "creep_per_s",
+             .low = 0,
+             .high = 1e4,  // at once
+             .scale = 1,
+             .spacing = Spacing::kLogarithmic,
+             .bounds_are_natural = true}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::Vector2d(1e-3, 0), Eigen::Vector2d(0.02, 0), Eigen::Vector2d(0.01, 200)};

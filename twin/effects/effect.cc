@@ -43,6 +43,7 @@ EffectPicture Effect::Picture(const Eigen::VectorXd&, const Setting&) const {
 }
 
 bool IsAtBound(const EffectParameter& parameter, double value) {
+  if (parameter.bounds_are_natural) return false;
   const double near = parameter.spacing == EffectParameter::Spacing::kLogarithmic
                           ? 0.02 * std::abs(value)
                           : 1e-3 * (parameter.high - parameter.low);

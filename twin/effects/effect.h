@@ -36,9 +36,12 @@ struct EffectParameter {
   int count = 1;
   Spacing spacing = Spacing::kEven;
   bool is_moment = false;  // in a rod a search moves it by the moments that bend that rod
+  // Nothing is beyond its bounds, as of a share, or it is the same effect there.
+  bool bounds_are_natural = false;
 };
 
-// Whether a value is at a bound of its parameter that is no "not at all": the truth may lie beyond.
+// Whether a value is at a bound of its parameter beyond which the truth may lie: one that is
+// neither natural nor a "not at all".
 bool IsAtBound(const EffectParameter& parameter, double value);
 
 // What an effect may change before a simulation.

@@ -51,7 +51,9 @@ class TensionOnly : public Effect {
     picture.where = "in all springs";
     return picture;
   }
-  std::vector<EffectParameter> parameters() const override { return {{"slack_share", 0, 1, 0.3}}; }
+  std::vector<EffectParameter> parameters() const override {
+    return {{.key = "slack_share", .low = 0, .high = 1, .scale = 0.3, .bounds_are_natural = true}};
+  }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 0.8)};
   }

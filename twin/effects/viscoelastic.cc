@@ -62,8 +62,9 @@ class Viscoelastic : public Effect {
     return picture;
   }
   std::vector<EffectParameter> parameters() const override {
-    return {{"relaxing_share", 0, 0.95, 0.3},
-            {"relaxation_time_s", 0, 20, 1, 1, EffectParameter::Spacing::kLogarithmic}};
+    return {
+        {.key = "relaxing_share", .low = 0, .high = 0.95, .scale = 0.3, .bounds_are_natural = true},
+        {"relaxation_time_s", 0, 20, 1, 1, EffectParameter::Spacing::kLogarithmic}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
     return {Eigen::Vector2d(0.1, 0.03), Eigen::Vector2d(0.1, 0.2), Eigen::Vector2d(0.1, 1)};

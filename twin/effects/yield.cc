@@ -74,7 +74,11 @@ class Yield : public Effect {
     using Spacing = EffectParameter::Spacing;
     return {{"yield_stretch_m", 0, 1, 1, 1, Spacing::kLogarithmic},
             {"yield_strain", 0, 10, 1, 1, Spacing::kLogarithmic},
-            {"controller_lag_s", 0, 0.02, 1e-4}};
+            {.key = "controller_lag_s",
+             .low = 0,
+             .high = 0.02,
+             .scale = 1e-4,
+             .bounds_are_natural = true}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem& system) const override {
     std::vector<Eigen::VectorXd> starts;

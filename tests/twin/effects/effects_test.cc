@@ -235,5 +235,11 @@ TEST(IsAtBound, IsSoNearEitherEndButNotAtNothing) {
   EXPECT_TRUE(IsAtBound(from_nothing, 3));
 }
 
+TEST(IsAtBound, IsNoShareOfOne) {
+  const EffectParameter share = GetEffect("tension_only").parameters().at(0);
+  EXPECT_EQ(share.high, 1);
+  EXPECT_FALSE(IsAtBound(share, 1)) << "no spring holds at all: nothing is beyond";
+}
+
 }  // namespace
 }  // namespace physpring
