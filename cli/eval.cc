@@ -73,7 +73,11 @@ void WarnIfUseless(const Evaluation& evaluation) {
     first.push_back(evaluated.result.first_predicted);
     last.push_back(evaluated.recording.frame_count());
   }
-  PrintWarnings(NearerBaselines(results, first, last, "this"));
+  const std::string little =
+      LittleExplained(results, first, last, evaluation.recordings[0].recording);
+  std::vector<std::string> warnings = NearerBaselines(results, first, last, "this");
+  if (!little.empty()) warnings.insert(warnings.begin(), little);
+  PrintWarnings(warnings);
 }
 
 void Run(const EvalArguments& arguments) {

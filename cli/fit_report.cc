@@ -57,6 +57,17 @@ std::vector<std::string> NearerBaselines(const std::vector<RecordingResult>& res
   return lines;
 }
 
+std::string LittleExplained(const std::vector<RecordingResult>& results,
+                            const std::vector<int>& first, const std::vector<int>& last,
+                            const Recording& noisy) {
+  const auto level = MeanTrack(results, first, last,
+                               [](const RecordingResult& one) { return one.levels[0].lifted; });
+  const auto still = MeanTrack(results, first, last,
+                               [](const RecordingResult& one) { return one.baselines[0].errors; });
+  if (!level || !still) return "";
+  return TooLittleExplained(*level, *still, MeasurementNoise(noisy.points));
+}
+
 FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision, int threads) {
   const int count = static_cast<int>(data.recordings.size());
   std::vector<RecordingResult> results(count);
@@ -78,11 +89,8 @@ FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision,
   report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
                             InMillimetres(fit), InMillimetres(still));
   if (later) report.line += fmt::format("; on the later ones: {}", InMillimetres(later));
-  if (fit && still) {
-    const std::string little =
-        TooLittleExplained(*fit, *still, MeasurementNoise(data.recordings[0].points));
-    if (!little.empty()) report.warnings.push_back(little);
-  }
+  const std::string little = LittleExplained(results, first, split, data.recordings[0]);
+  if (!little.empty()) report.warnings.push_back(little);
   if (later && report.warnings.empty()) {
     report.warnings = NearerBaselines(results, split, end, "the frames after those for fitting");
   }

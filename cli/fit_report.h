@@ -27,6 +27,12 @@ std::vector<std::string> NearerBaselines(const std::vector<RecordingResult>& res
                                          const std::vector<int>& first,
                                          const std::vector<int>& last, const std::string& frames);
 
+// What TooLittleExplained says of level 0 in frames [first, last) of the recordings; `noisy` is one
+// of them.
+std::string LittleExplained(const std::vector<RecordingResult>& results,
+                            const std::vector<int>& first, const std::vector<int>& last,
+                            const Recording& noisy);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_CLI_FIT_REPORT_H_

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "twin/atomic_file.h"
+#include "twin/checks/lost_points.h"
 #include "twin/checks/objects.h"
 #include "twin/checks/outliers.h"
 #include "twin/checks/plausibility.h"
@@ -23,6 +24,7 @@
 namespace physpring {
 namespace {
 
+constexpr double kStrongestGravity = 1000;  // m/s^2
 constexpr std::array<std::string_view, 13> kArrays{
     "points", "controllers", "fps",   "mass",    "gravity", "ground",      "interior",
     "rest",   "velocity",    "order", "surface", "track",   "train_frames"};
@@ -39,8 +41,16 @@ void ExpectKnownArrays(const Npz& arrays, const NpzFields& fields) {
   }
 }
 
-void ReadMeasured(NpzFields& fields, Recording& recording) {
-  recording.points = fields.FramesWithUnseen("points", "N");
+std::vector<Points> ReadTracks(NpzFields& fields, const std::string& path, const std::string& name,
+                               const std::string& size, Recording& recording) {
+  std::vector<Points> frames = fields.FramesWithUnseen(name, size);
+  const std::string lost = TakeZerosAsUnseen(fmt::format("{}: array '{}'", path, name), &frames);
+  if (!lost.empty()) recording.warnings.push_back(lost);
+  return frames;
+}
+
+void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recording) {
+  recording.points = ReadTracks(fields, path, "points", "N", recording);
   if (fields.Extent("T") < 2) fields.Fail("points", "has fewer than 2 frames");
   if (!recording.points[0].array().isFinite().any()) {
     fields.Fail("points", "has nothing seen in frame 0, which a motion starts from");
@@ -52,8 +62,9 @@ void ReadMeasured(NpzFields& fields, Recording& recording) {
     }
   }
   recording.controllers = fields.Frames("controllers", "C");
-  if (fields.Has("surface")) recording.surface = fields.FramesWithUnseen("surface", "S");
-  if (fields.Has("track")) recording.track = fields.FramesWithUnseen("track", "K");
+  if (fields.Has("surface"))
+    recording.surface = ReadTracks(fields, path, "surface", "S", recording);
+  if (fields.Has("track")) recording.track = ReadTracks(fields, path, "track", "K", recording);
 }
 
 double ReadBetween(NpzFields& fields, const std::string& name, double least, double most) {
@@ -84,6 +95,10 @@ void ReadConstants(NpzFields& fields, const std::string& path, Recording& record
         fmt::format("{}: no 'mass' is given, {} kg is assumed", path, kAssumedMass));
   }
   if (fields.Has("gravity")) recording.gravity = fields.Vector("gravity", "3");
+  if (recording.gravity.cwiseAbs().maxCoeff() > kStrongestGravity) {
+    fields.Fail("gravity", fmt::format("holds {:.3g} m/s^2, expected at most {}",
+                                       recording.gravity.cwiseAbs().maxCoeff(), kStrongestGravity));
+  }
   if (fields.Has("ground")) recording.ground = ReadGround(fields);
 
   const int frames = recording.frame_count();
@@ -132,9 +147,12 @@ void ExpectDistinct(const NpzFields& fields, const Recording& recording, const s
       if (difference[0] >= kSmallestDistance) break;
       if (difference.norm() >= kSmallestDistance) continue;
       const auto [first, second] = std::minmax(columns[i], columns[j]);
-      fields.Fail(array, fmt::format("has {} and {} at the same place, expected {} m or more",
-                                     NameOfColumn(recording, first),
-                                     NameOfColumn(recording, second), kSmallestDistance));
+      const bool held = first < recording.particle_count() && second >= recording.particle_count();
+      fields.Fail(array,
+                  fmt::format("has {} and {} at the same place, expected {} m or more{}",
+                              NameOfColumn(recording, first), NameOfColumn(recording, second),
+                              kSmallestDistance,
+                              held ? "; leave a point out that moves as its controller does" : ""));
     }
   }
 }
@@ -201,7 +219,7 @@ Recording ReadArrays(const Npz& arrays, const std::string& path) {
   ExpectKnownArrays(arrays, fields);
   Recording recording;
   recording.name = std::filesystem::path(path).stem().string();
-  ReadMeasured(fields, recording);
+  ReadMeasured(fields, path, recording);
   ReadConstants(fields, path, recording);
   ReadParticles(fields, recording);
   SetStart(fields, path, recording);

@@ -82,6 +82,7 @@ TEST_F(Plausibility, SaysThatATwinIsUseless) {
     const ProgramResult again =
         info ? RunProgram({command, recording_}) : RunProgram({command, twin_, recording_});
     EXPECT_THAT(again.errors, HasSubstr("which axis points up?")) << command;
+    EXPECT_EQ(again.errors.find("warning: the twin explains ") == std::string::npos, info);
   }
 }
 

@@ -109,6 +109,7 @@ TEST_F(RecordingFile, RefusesWhatDisagrees) {
       {"fps", {1}, {30}, "array 'fps' has the shape (1,), expected ()"},
       {"mass", {}, {1e-300}, "array 'mass' holds 1e-300, expected 1e-09 to"},
       {"gravity", {2}, {0, -9.81}, "has the shape (2,), expected (3,)"},
+      {"gravity", {3}, {0, 0, -1e200}, "'gravity' holds 1e+200 m/s^2, expected at most 1000"},
       {"ground", {4}, {0, 0, 0, 1}, "array 'ground' holds the normal (0, 0, 0), expected one"},
       {"ground", {3}, {0, 0, 1}, "array 'ground' has the shape (3,), expected (4,)"},
       {"interior", {3}, {1, 2, 3}, "has the shape (3,), expected (M, 3)"},

@@ -15,6 +15,7 @@ constexpr std::size_t kFewestOdd = 3;  // frames that are odd for once may be so
 constexpr double kFewestOddPart = 0.02;
 constexpr int kWindow = 6, kBefore = 3;  // frames that a curve goes through, and those before a gap
 constexpr double kFarBetter = 0.5;       // the squared residuals with a gap, times those without
+constexpr int kLongestRepetition = 10;   // frames
 constexpr std::size_t kNamedFrames = 8;
 
 using Window = Eigen::Matrix<double, kWindow, kWindow>;
@@ -82,10 +83,15 @@ std::vector<int> RepeatedFrames(const Recording& recording) {
            IsSame(recording.points[t], recording.points[t - 1]);
   };
   std::vector<int> repeated;
-  for (int t = 2; t + 1 < recording.frame_count(); ++t) {
-    if (is_repeated(t) && !is_repeated(t - 1) && !is_repeated(t + 1)) repeated.push_back(t);
+  int first = 1;  // of a run of repetitions; what is still for longer, or at an end, is at rest
+  for (int t = 1; t < recording.frame_count(); ++t) {
+    if (is_repeated(t)) continue;
+    if (first > 1 && t - first <= kLongestRepetition) {
+      for (int frame = first; frame < t; ++frame) repeated.push_back(frame);
+    }
+    first = t + 1;
   }
-  return AreEnough(repeated, recording.frame_count()) ? repeated : std::vector<int>();
+  return repeated.size() >= kFewestOdd ? repeated : std::vector<int>();
 }
 
 std::string OddFrameTimes(const Recording& recording) {

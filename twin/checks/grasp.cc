@@ -73,6 +73,7 @@ std::string OddGravity(const Recording& recording, const MotionScale& scale) {
 
 std::string FarGrasp(const Recording& recording, const MotionScale& scale) {
   const Points particles = recording.start.leftCols(recording.particle_count());
+  if (particles.cols() < 2) return "";  // nothing says what is far
   const NeighbourSearch search(particles);
   for (int c = 0; c < recording.controller_count(); ++c) {
     const Eigen::Vector3d place = recording.start.col(recording.particle_count() + c);

@@ -18,7 +18,11 @@ constexpr double kSpacings = 1.5;  // a jump is larger than so many distances to
 constexpr int kKeepsVelocity = 3;  // frames
 constexpr double kTypical = 15;    // and than so many times the typical difference
 constexpr std::size_t kTypicalOf = 1000000;  // differences, or fewer
-constexpr double kGapMatters = 2;  // a point that was off or unseen may move by so many limits
+constexpr double kGapMatters = 2;            // a point that was unseen may move by so many limits
+// The distance to either nearest point that is seen changes by less, unless the point jumps.
+constexpr int kDistances = 2;
+constexpr double kStretches = 0.3;       // of the distance ...
+constexpr double kDistanceSlack = 3;     // ... and so many times the typical difference
 constexpr std::size_t kNamedTracks = 3;  // tracks that the line names
 constexpr double kNothingExplains = std::numeric_limits<double>::infinity();
 
@@ -44,7 +48,7 @@ class OutlierSearch {
     std::vector<OutlyingTrack> tracks;
     for (int i = 0; i < static_cast<int>(near_.size()); ++i) {
       const double limit = std::max(kSpacings * near_[i][0].distance, kTypical * typical);
-      OutlyingTrack track = Follow(i, limit);
+      OutlyingTrack track = Follow(i, limit, kDistanceSlack * typical);
       if (!track.frames.empty()) tracks.push_back(std::move(track));
     }
     return tracks;
@@ -71,7 +75,8 @@ class OutlierSearch {
     return {frame, Step(i, before, frame) / (frame - before)};
   }
   double TypicalDifference() const;
-  OutlyingTrack Follow(int i, double limit) const;
+  bool KeepsDistances(int i, int from, int to, double slack) const;
+  OutlyingTrack Follow(int i, double limit, double slack) const;
 
   const std::vector<Points>& frames_;
   std::vector<std::vector<Neighbour>> near_;  // of each point, nearest first
@@ -90,15 +95,36 @@ double OutlierSearch::TypicalDifference() const {
   return Median(std::move(differences));
 }
 
-OutlyingTrack OutlierSearch::Follow(int i, double limit) const {
+// Whether the point is about as far from its nearest points as it was. A free end that whips leaves
+// their motion, but not them.
+bool OutlierSearch::KeepsDistances(int i, int from, int to, double slack) const {
+  int compared = 0;
+  for (const Neighbour& near : near_[i]) {
+    if (!Seen(from, near.index) || !Seen(to, near.index)) continue;
+    const auto distance = [&](int frame) {
+      return (frames_[frame].col(i) - frames_[frame].col(near.index)).norm();
+    };
+    const double before = distance(from);
+    if (std::abs(distance(to) - before) > kStretches * before + slack) return false;
+    if (++compared == kDistances) break;
+  }
+  return compared > 0;
+}
+
+OutlyingTrack OutlierSearch::Follow(int i, double limit, double slack) const {
   OutlyingTrack track{i, {}, 0};
   if (!Seen(0, i)) return track;  // placed from neighbours: nothing is known of its path before
   LastGood last;
+  bool off = false;
   for (int frame = 1; frame < static_cast<int>(frames_.size()); ++frame) {
     if (!Seen(frame, i)) continue;
     const double difference = Difference(i, last, frame);
-    const double allowed = frame - last.frame > 1 ? kGapMatters * limit : limit;
-    if (difference > allowed && std::isfinite(difference)) {
+    const bool moves_along =
+        difference <= (!off && frame - last.frame > 1 ? kGapMatters * limit : limit);
+    const bool keeps = KeepsDistances(i, last.frame, frame, slack);
+    // who was off must show that it is back
+    off = std::isfinite(difference) && (off ? !(moves_along && keeps) : !(moves_along || keeps));
+    if (off) {
       if (track.frames.empty()) track.jump = difference;
       track.frames.push_back(frame);
       continue;

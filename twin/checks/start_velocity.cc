@@ -121,18 +121,21 @@ double Interpolate(const NeighbourSearch& search, const Points& velocities,
 }
 
 // Whether v makes most of the second step, beyond what noise does, and is about the same over half
-// the time. A start from rest that gets faster and faster gives a much smaller v there.
+// the time. A start from rest that gets faster and faster gives a much smaller v there. One that
+// vibrates from frame to frame goes back in the second step.
 bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
                     const MotionScale& scale) {
   const int frames = static_cast<int>(parabolas.weights.size());
   const Parabolas half = LayParabolas(recording, std::max(kFewestParabolaFrames, (frames + 1) / 2));
-  double from_velocity = 0, from_half = 0, second_step = 0, count = 0;
+  double from_velocity = 0, from_half = 0, along = 0, second_step = 0, count = 0;
   for (Eigen::Index i = 0; i < recording.point_count(); ++i) {
     if (!SeenInAll(recording.points, frames, i)) continue;
     const Eigen::Vector3d step = VelocityOf(recording.points, parabolas.weights, i) / recording.fps;
     from_velocity += step.squaredNorm();
     from_half += step.dot(VelocityOf(recording.points, half.weights, i) / recording.fps);
-    second_step += (recording.points[2].col(i) - recording.points[1].col(i)).squaredNorm();
+    const Eigen::Vector3d second = recording.points[2].col(i) - recording.points[1].col(i);
+    along += step.dot(second);
+    second_step += second.squaredNorm();
     ++count;
   }
   const double variance = 3 * scale.noise * scale.noise * count;  // of noise along three axes
@@ -140,7 +143,8 @@ bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
   const double step = std::max(second_step - 2 * variance, 0.0);
   return from_velocity > std::pow(kRounding * scale.size, 2) * count &&
          from_velocity > kSignificant * kSignificant * error &&
-         from_velocity > kInMotion * kInMotion * step && from_half > kSame * from_velocity;
+         from_velocity > kInMotion * kInMotion * step && from_half > kSame * from_velocity &&
+         along > kSame * from_velocity;
 }
 
 }  // namespace

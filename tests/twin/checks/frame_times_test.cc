@@ -55,6 +55,12 @@ TEST(FrameTimes, NamesFramesThatAreThereTwice) {
                                     "exactly those before them")));
 }
 
+TEST(FrameTimes, NamesFramesThatAreThereSeveralTimes) {
+  const Recording recording = With(3);
+  EXPECT_THAT(RepeatedFrames(recording), testing::SizeIs(24));
+  EXPECT_THAT(OddFrameTimes(recording), HasSubstr("recorded twice"));
+}
+
 TEST(FrameTimes, TakesAShakyHandForNoGap) {
   PlainRope rope;
   rope.hand = [](double t) {  // shakes at a third of the rate of frames

@@ -38,6 +38,26 @@ TEST(Outliers, AreAllFramesOfATrackAfterItJumpsForGood) {
   EXPECT_NEAR(found[0].jump, 0.374, 0.01);
 }
 
+// The offset is about the distance to the neighbours, which swing about the point for long.
+TEST(Outliers, StayOutUntilTheyAreBack) {
+  for (int point = 2; point < 11; ++point) {
+    Recording recording = PlainRope().Record();
+    for (int t = 30; t < 120; ++t) recording.points[t].col(point) += Eigen::Vector3d(0, 0.1, 0);
+    const std::vector<OutlyingTrack> found = FindOutliers(recording);
+    ASSERT_EQ(found.size(), 1u) << point;
+    EXPECT_EQ(found[0].frames, Range(30, 120)) << point;
+  }
+}
+
+// A free end that whips leaves the motion of its neighbours, not its distance to them.
+TEST(Outliers, AreNoneAtAnEndThatWhips) {
+  PlainRope rope;
+  rope.fps = 20;
+  rope.frames = 60;
+  rope.hand = [](double t) { return Eigen::Vector3d(0.25 * std::sin(9 * t), 0, 0); };
+  EXPECT_TRUE(FindOutliers(rope.Record()).empty());
+}
+
 TEST(Outliers, AreTheFramesOfSpikes) {
   Recording recording = PlainRope().Record();
   for (int t = 30; t < 36; ++t) recording.points[t].col(4) += Eigen::Vector3d(0.1, 0.2, 0.1);

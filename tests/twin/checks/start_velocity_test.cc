@@ -70,6 +70,17 @@ TEST(StartVelocity, OfAStartFromRestIsNone) {
   EXPECT_FALSE(EstimateStartVelocity(still).has_value()) << "nothing but rounding";
 }
 
+// A taut body that falls from rest: it vibrates with about the time of two frames.
+TEST(StartVelocity, OfAVibrationFromRestIsNone) {
+  Recording taut = PlainRope().Record();
+  for (int t = 0; t < taut.frame_count(); ++t) {
+    const double fallen = 0.02 * (1 - std::cos(0.9 * M_PI * t) * std::exp(-0.1 * t));
+    taut.points[t] =
+        taut.start.leftCols(taut.point_count()).colwise() - Eigen::Vector3d(0, 0, fallen);
+  }
+  EXPECT_FALSE(EstimateStartVelocity(taut).has_value());
+}
+
 // Most of the body is far from the only point that is seen.
 TEST(StartVelocity, OfABodyThatIsHardlyMeasuredIsNotKnown) {
   PlainRope rope;
