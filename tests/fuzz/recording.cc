@@ -43,5 +43,7 @@ std::vector<std::string> physpring::FuzzSeeds() {
   Npz empty = least;
   empty["points"] = NpzArray::Floats({65535, 0, 3}, nullptr);  // 2^31 - 1 frames of nothing
   empty["controllers"] = empty["points"];
-  return {BytesOf(arrays), BytesOf(least), BytesOf(empty)};
+  Npz none = least;
+  none["points"] = NpzArray::Floats({0, 3, 3}, nullptr);
+  return {BytesOf(arrays), BytesOf(least), BytesOf(empty), BytesOf(none)};
 }

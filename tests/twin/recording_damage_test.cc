@@ -98,6 +98,7 @@ TEST_F(RecordingFile, RefusesWhatDisagrees) {
   const std::vector<Case> cases{
       {"points", {1, 1, 3}, {1, 2, 3}, "array 'points' has fewer than 2 frames"},
       {"points", {4, 0, 3}, {}, "array 'points' has no points"},
+      {"points", {0, 2, 3}, {}, "array 'points' has fewer than 2 frames"},
       {"points", {2, 3}, {1, 2, 3, 4, 5, 6}, "has the shape (2, 3), expected (T, N, 3)"},
       {"points", {1, 2, 4}, {1, 2, 3, 4, 5, 6, 7, 8}, "shape (1, 2, 4), expected (T, N, 3)"},
       {"controllers", {1, 1, 3}, {1, 2, 3}, "expected (T, C, 3) with T = 4"},

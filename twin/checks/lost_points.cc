@@ -54,8 +54,9 @@ std::size_t TakeZerosOfPoint(Eigen::Index i, std::vector<Points>* frames) {
 }  // namespace
 
 std::string TakeZerosAsUnseen(const std::string& where, std::vector<Points>* frames) {
+  if (frames->empty()) return "";
   std::size_t lost = 0, points = 0;
-  for (Eigen::Index i = 0; i < frames->at(0).cols(); ++i) {
+  for (Eigen::Index i = 0; i < frames->front().cols(); ++i) {
     const std::size_t of_point = TakeZerosOfPoint(i, frames);
     lost += of_point;
     points += of_point > 0;
