@@ -32,6 +32,18 @@ std::optional<double> MeanTrack(const std::vector<RecordingResult>& results,
   return sum / count;
 }
 
+std::optional<double> TrackOfLevel0(const std::vector<RecordingResult>& results,
+                                    const std::vector<int>& first, const std::vector<int>& last) {
+  return MeanTrack(results, first, last,
+                   [](const RecordingResult& one) { return one.levels[0].lifted; });
+}
+
+std::optional<double> MotionlessTrack(const std::vector<RecordingResult>& results,
+                                      const std::vector<int>& first, const std::vector<int>& last) {
+  return MeanTrack(results, first, last,
+                   [](const RecordingResult& one) { return one.baselines[0].errors; });
+}
+
 std::string InMillimetres(const std::optional<double>& error) {
   return error ? fmt::format("{:.3f} mm", 1e3 * *error) : "no data";
 }
@@ -60,10 +72,8 @@ std::vector<std::string> NearerBaselines(const std::vector<RecordingResult>& res
 std::string LittleExplained(const std::vector<RecordingResult>& results,
                             const std::vector<int>& first, const std::vector<int>& last,
                             const Recording& noisy) {
-  const auto level = MeanTrack(results, first, last,
-                               [](const RecordingResult& one) { return one.levels[0].lifted; });
-  const auto still = MeanTrack(results, first, last,
-                               [](const RecordingResult& one) { return one.baselines[0].errors; });
+  const auto level = TrackOfLevel0(results, first, last);
+  const auto still = MotionlessTrack(results, first, last);
   if (!level || !still) return "";
   return TooLittleExplained(*level, *still, MeasurementNoise(noisy.points));
 }
@@ -79,11 +89,9 @@ FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision,
     split[i] = data.recordings[i].train_frames;
     end[i] = data.recordings[i].frame_count();
   });
-  const auto of_level = [](const RecordingResult& one) { return one.levels[0].lifted; };
-  const auto of_still = [](const RecordingResult& one) { return one.baselines[0].errors; };
-  const auto fit = MeanTrack(results, first, split, of_level);
-  const auto still = MeanTrack(results, first, split, of_still);
-  const auto later = MeanTrack(results, split, end, of_level);
+  const auto fit = TrackOfLevel0(results, first, split);
+  const auto still = MotionlessTrack(results, first, split);
+  const auto later = TrackOfLevel0(results, split, end);
 
   FitReport report;
   report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
