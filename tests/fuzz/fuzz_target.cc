@@ -9,6 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "tests/support/temporary_folder.h"
+
 namespace physpring {
 namespace {
 
@@ -26,23 +28,6 @@ void CheckMessage(std::string_view start, const std::string& message) {
   if (std::any_of(message.begin(), message.end(), is_control)) Give("is no plain line", message);
 }
 
-struct MemoryFolder {
-  MemoryFolder() {
-    const bool has_memory = std::filesystem::is_directory("/dev/shm");
-    path = has_memory ? "/dev/shm" : std::filesystem::temp_directory_path().string();
-    path += "/physpring-fuzz-XXXXXX";
-    if (!mkdtemp(path.data())) throw std::runtime_error("no folder like " + path);
-  }
-  ~MemoryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  MemoryFolder(const MemoryFolder&) = delete;
-  MemoryFolder& operator=(const MemoryFolder&) = delete;
-
-  std::string path;
-};
-
 }  // namespace
 
 void MayRefuse(std::string_view start, const std::function<void()>& parse) {
@@ -54,8 +39,10 @@ void MayRefuse(std::string_view start, const std::function<void()>& parse) {
 }
 
 const std::string& FuzzFolder() {
-  static const MemoryFolder folder;
-  return folder.path;
+  const std::filesystem::path memory = "/dev/shm";
+  static const TemporaryFolder folder(
+      std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path());
+  return folder.path();
 }
 
 void WriteFuzzFile(const std::string& path, std::string_view bytes) {

@@ -12,8 +12,9 @@ namespace physpring {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    path_ = (std::filesystem::temp_directory_path() / "physpring-XXXXXX").string();
+  TemporaryFolder() : TemporaryFolder(std::filesystem::temp_directory_path()) {}
+  explicit TemporaryFolder(const std::filesystem::path& parent) {
+    path_ = (parent / "physpring-XXXXXX").string();
     if (!mkdtemp(path_.data())) throw std::runtime_error("no temporary folder: " + path_);
   }
   ~TemporaryFolder() {
