@@ -226,16 +226,6 @@ Recording ReadArrays(const Npz& arrays, const std::string& path) {
   return recording;
 }
 
-}  // namespace
-
-Recording ParseRecording(const Npz& arrays, const std::string& path) {
-  Recording recording = ReadArrays(arrays, path);
-  Check(path, arrays.contains("velocity"), recording);
-  return recording;
-}
-
-namespace {
-
 // (T, columns, 3)
 NpzArray StoreFrames(const std::vector<Points>& frames) {
   const Eigen::Index columns = frames.empty() ? 0 : frames[0].cols();
@@ -277,15 +267,22 @@ Npz StoreRecording(const Recording& recording) {
 
 }  // namespace
 
-Recording ReadRecording(const std::string& path) {
-  std::string bytes = ReadFile(path);
-  const std::string hash = HashBytes(bytes);
-  Npz arrays = ParseNpz(bytes, path);
-  bytes = std::string();  // of a large file no more is held than is needed
+// Of a large file no more is held than is needed: the arrays go before the checks, and in
+// ReadRecording the bytes before both.
+Recording ParseRecording(Npz arrays, const std::string& path) {
   Recording recording = ReadArrays(arrays, path);
   const bool velocity_given = arrays.contains("velocity");
   arrays.clear();
   Check(path, velocity_given, recording);
+  return recording;
+}
+
+Recording ReadRecording(const std::string& path) {
+  std::string bytes = ReadFile(path);
+  const std::string hash = HashBytes(bytes);
+  Npz arrays = ParseNpz(bytes, path);
+  bytes = std::string();
+  Recording recording = ParseRecording(std::move(arrays), path);
   recording.hash = hash;
   return recording;
 }

@@ -64,8 +64,8 @@ struct Recording {
 Recording ReadRecording(const std::string& path);
 
 // The same for arrays already in memory, without the hash; `path` gives the name and begins
-// messages.
-Recording ParseRecording(const Npz& arrays, const std::string& path);
+// messages. Move large ones here: they are let go before the checks.
+Recording ParseRecording(Npz arrays, const std::string& path);
 
 // Writes `recording` to `path` atomically (temporary file, fsync, rename), deflated; positions and
 // velocities in float32, so that ReadRecording gives the same recording back up to float32. Throws
