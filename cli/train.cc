@@ -63,8 +63,11 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
   const bool counts = std::count(options.neighbours.begin(), options.neighbours.end(), 0) == 0;
   expect(counts, "--neighbours", "takes counts or auto, not both");
   expect(!two_stage || options.neighbours.empty(), "--neighbours", "is chosen by two-stage itself");
-  expect(!two_stage || options.optimizer == TrainOptions::Optimizer::kAutomatic, "--optimizer",
+  const bool full = options.method == TrainOptions::Method::kFull;
+  expect(full || options.optimizer == TrainOptions::Optimizer::kAutomatic, "--optimizer",
          "is of --method full");
+  expect(options.method != TrainOptions::Method::kSmooth || options.epochs == 0, "--epochs",
+         "is not of --method smooth, which ends when it gains nothing more");
   expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
          "needs one ratio for each level but level 0");
   const bool given = options.ratios != TrainOptions().ratios;
@@ -77,7 +80,7 @@ TrainOptions OptionsOf(const TrainArguments& arguments) {
   expect(learned_features || GetReduction(options.reduction).LearnsFeatures(), "--features",
          "is of --reduction " + FeatureReductions());
   expect(learned_features || options.levels > 1, "--features", "needs --levels 2 or more");
-  expect(!two_stage || arguments.effects.empty(), "--effects", "is of --method full");
+  expect(!two_stage || arguments.effects.empty(), "--effects", "is not of --method two-stage");
   expect(arguments.from.empty() || arguments.effects.empty(), "--effects",
          "and --from exclude each other: level 0 comes with its effects");
   expect(two_stage || !options.self_collision, "--self-collision", "is of --method two-stage");

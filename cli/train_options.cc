@@ -36,19 +36,20 @@ void VisitHierarchyOptions(Options& options, Visitor& visit) {
 
 template <class Options, class Visitor>
 void VisitFitOptions(Options& options, Visitor& visit) {
-  visit.Neighbours("--neighbours", &options.neighbours,
-                   "springs of a particle; of several the best on held-back frames (full)");
+  visit.Neighbours(
+      "--neighbours", &options.neighbours,
+      "springs of a particle; of several the best on held-back frames (not two-stage)");
   visit.Choice("--optimizer", &options.optimizer, kOptimizerWords, "of single springs (full)");
   visit.CountOrAuto("--epochs", &options.epochs, "steps of the last stage");
   visit.CountOrAuto("--substeps", &options.substeps,
                     "sub-steps of a frame; auto: as many as are stable");
   visit.Choice("--precision", &options.single_precision, kPrecisionWords, "of the simulation");
   visit.Choice("--controller-velocity", &options.controller_velocity, kVelocityWords,
-               "whether dashpots feel the controllers' velocity; auto: whatever predicts better "
-               "(full), no (two-stage)");
+               "whether dashpots feel the controllers' velocity; auto: whatever predicts better, "
+               "no (two-stage)");
   visit.Choice("--cone", &options.cone, kConeWords,
                "of friction on the ground: Coulomb's, or MuJoCo's default; auto: whatever predicts "
-               "better (full), elliptic (two-stage)");
+               "better, elliptic (two-stage)");
   visit.Flag("--self-collision", &options.self_collision,
              "let particles collide with each other (two-stage)");
 }
@@ -57,7 +58,8 @@ void VisitFitOptions(Options& options, Visitor& visit) {
 template <class Options, class Visitor>
 void VisitTrainOptions(Options& options, Visitor& visit) {
   visit.Choice("--method", &options.method, kMethodWords,
-               "full: by gradients of whole rollouts; two-stage: as PhysTwin does");
+               "full: by gradients of whole rollouts; smooth: a material of few numbers, no single "
+               "springs; two-stage: as PhysTwin does");
   visit.Count("--levels", &options.levels, 1, 10, "levels of the twin, level 0 included");
   if (visit.all() || options.levels > 1) VisitHierarchyOptions(options, visit);
   VisitFitOptions(options, visit);

@@ -13,7 +13,9 @@
 namespace physpring {
 
 inline constexpr Word<TrainOptions::Method> kMethodWords[] = {
-    {"full", TrainOptions::Method::kFull}, {"two-stage", TrainOptions::Method::kTwoStage}};
+    {"full", TrainOptions::Method::kFull},
+    {"smooth", TrainOptions::Method::kSmooth},
+    {"two-stage", TrainOptions::Method::kTwoStage}};
 
 inline constexpr Word<TrainOptions::Optimizer> kOptimizerWords[] = {
     {"auto", TrainOptions::Optimizer::kAutomatic},

@@ -20,7 +20,7 @@ namespace physpring {
 
 // The precision of the prior on what a diagnosis moves. The springs' own parts have another one
 // (factors.h).
-inline constexpr double kDiagnosisPrecision = LevenbergMarquardtOptions().precision;
+inline constexpr double kDiagnosisPrecision = kLevenbergMarquardtPrecision;
 
 class EffectModel {
  public:

@@ -43,8 +43,9 @@ class Train : public testing::Test {
   // Arguments of a short training that takes a second or less.
   Words Short(const std::string& method) const {
     Words arguments = {"train", rope_, other_, "-o", twin_, "--method", method, "--seed", "7"};
-    return arguments + (method == "full" ? Words{"--epochs", "3", "--neighbours", "4,6"}
-                                         : Words{"--epochs", "30"});
+    return arguments + (method == "full"     ? Words{"--epochs", "3", "--neighbours", "4,6"}
+                        : method == "smooth" ? Words{"--neighbours", "4,6"}
+                                             : Words{"--epochs", "30"});
   }
 
   // The twin file of Short, trained without a break.

@@ -125,7 +125,8 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--reduction", "best"}, "--reduction: takes learned or random or gramian or kmeans");
   refused({"--levels", "2", "--reduction", "kmeans", "--features", "positions"},
           "--features: is of --reduction learned");
-  refused({"--method", "three-stage"}, "--method: takes full or two-stage, not 'three-stage'");
+  refused({"--method", "three-stage"},
+          "--method: takes full or smooth or two-stage, not 'three-stage'");
   for (const char* epochs : {"-1", "0", "2.5", "ten", "3x", ""}) {
     refused({std::string("--epochs=") + epochs}, "--epochs");
   }
@@ -137,6 +138,8 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--seed", "-3"},
           "--seed: takes a whole number from 0 to 18446744073709551615, not '-3'");
   refused({"--neighbours", "8", "--method", "two-stage"}, "--neighbours: is chosen by two-stage");
+  refused({"--optimizer", "adam", "--method", "smooth"}, "--optimizer: is of --method full");
+  refused({"--epochs", "3", "--method", "smooth"}, "--epochs: is not of --method smooth");
   refused({"--reduction", "kmeans"}, "--reduction: needs --levels 2 or more");
   refused({"--features", "positions"}, "--features: needs --levels 2 or more");
   refused({"--levels", "2", "--ratios", "0.5,0.3"}, "--ratios: are of levels 1, 2, ...");

@@ -39,9 +39,12 @@ std::string PartsOf(const ProgramResult& result) {
 }
 
 class TrainBy : public Train, public testing::WithParamInterface<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, TrainBy, testing::Values("full", "two-stage"),
+INSTANTIATE_TEST_SUITE_P(Methods, TrainBy, testing::Values("full", "smooth", "two-stage"),
                          [](const auto& test) {
-                           return std::string(test.param) == "full" ? "Full" : "TwoStage";
+                           const std::string method = test.param;
+                           return method == "full"     ? "Full"
+                                  : method == "smooth" ? "Smooth"
+                                                       : "TwoStage";
                          });
 
 TEST_P(TrainBy, WritesATwinAndAReport) {

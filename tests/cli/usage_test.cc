@@ -25,7 +25,7 @@ TEST(Usage, HelpIsInPlainWords) {
 TEST(Usage, HelpNamesWhatAnOptionTakes) {
   const std::string train = RunProgram({"train", "--help"}).output;
   for (const char* option :
-       {"--method full|two-stage", "--neighbours N[,N...]|auto", "--checkpoint SECONDS"}) {
+       {"--method full|smooth|two-stage", "--neighbours N[,N...]|auto", "--checkpoint SECONDS"}) {
     EXPECT_NE(train.find(option), std::string::npos) << option << " in " << train;
   }
   EXPECT_NE(RunProgram({"record", "--help"}).output.find("--noise METRES"), std::string::npos);

@@ -21,6 +21,8 @@ struct EntryScale {
 EntryScale ScaleOf(Parameters::Kind kind) {
   switch (kind) {
     case Parameters::Kind::kGlobal:
+    case Parameters::Kind::kClassDashpot:
+    case Parameters::Kind::kMode:
       return {3, 30};
     case Parameters::Kind::kStiffness:
       return {kOwnStiffness, 1};
@@ -70,6 +72,10 @@ double FactorDifference(const Recording& recording) { return recording.ground ? 
 
 double DirectionDifference(const Recording& recording, bool single_precision) {
   return recording.ground || single_precision ? 1e-3 : 1e-5;
+}
+
+double MostRate(const TrainOptions& options, const Recording& recording) {
+  return options.substeps > 0 ? options.substeps * recording.fps : kMostSubsteps;
 }
 
 MotionProblem::Options FollowOptions(const Recording& recording, const Body& body,

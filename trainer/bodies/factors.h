@@ -30,9 +30,12 @@ constexpr int kMostSpringRecordings = 12;  // single springs are fitted to no mo
 double FactorDifference(const Recording& recording);
 double DirectionDifference(const Recording& recording, bool single_precision);
 
-// How a fit of `body` follows recordings. No stiffness is taken that would need more than 10,000
-// sub-steps a second (half of PhysTwin's). StepFactors (chosen_body.h) halves that for common
-// factors, so that single springs find room.
+// No stiffness is taken that would need more sub-steps a second: 10,000 (half of PhysTwin's), or as
+// many as the options ask for.
+double MostRate(const TrainOptions& options, const Recording& recording);
+
+// How a fit of `body` follows recordings. StepFactors (chosen_body.h) halves the most sub-steps for
+// common factors, so that single springs find room.
 MotionProblem::Options FollowOptions(const Recording& recording, const Body& body,
                                      const TrainOptions& options);
 

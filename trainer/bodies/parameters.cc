@@ -11,10 +11,9 @@
 namespace physpring {
 namespace {
 
-// Classes of about equal rest length: a new class begins where the sorted lengths jump by 3 %;
+// Classes of about equal rest length: a new class begins where the sorted lengths jump by `jump`;
 // where that gives many classes (an irregular mesh), equally filled ones.
-std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
-  constexpr double kJump = 1.03;
+std::vector<int> LengthClasses(const Eigen::VectorXd& length, double jump) {
   constexpr int kMostClasses = 10;
   constexpr int kEqualClasses = 6;
   const int springs = static_cast<int>(length.size());
@@ -24,7 +23,7 @@ std::vector<int> LengthClasses(const Eigen::VectorXd& length) {
                    [&](int i, int j) { return length[i] < length[j]; });
   int last = 0;
   for (int i = 0; i < springs; ++i) {
-    if (i > 0 && length[sorted[i]] > kJump * length[sorted[i - 1]]) ++last;
+    if (i > 0 && length[sorted[i]] > jump * length[sorted[i - 1]]) ++last;
     length_class[sorted[i]] = last;
   }
   if (last >= kMostClasses) {
@@ -46,11 +45,12 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       options_(options),
       effects_(LastEffects(base, options.free_effects), options.moment_unit),
       springs_(base.spring_count()),
-      length_class_(options.length_classes ? LengthClasses(base.rest_length)
+      length_class_(options.length_classes ? LengthClasses(base.rest_length, options.class_jump)
                                            : std::vector<int>(springs_, 0)),
       classes_(options.contact ? kContact + kContactCount : kContact),
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
-      effects_at_(classes_ + 2 * class_count_),
+      modes_at_(classes_ + 2 * class_count_),
+      effects_at_(modes_at_ + mode_count()),
       size_(effects_at_ + effects_.size()) {
   if (options.stretch) stretch_ = size_++;
   const auto add = [this](bool wanted, int* offset) {
@@ -70,6 +70,8 @@ Parameters::Kind Parameters::kind(int i) const {
   if (within(stiffness_)) return Kind::kStiffness;
   if (within(dashpot_)) return Kind::kDashpot;
   if (within(rest_length_)) return Kind::kRestLength;
+  if (i >= modes_at_ && i < effects_at_) return Kind::kMode;
+  if (i >= classes_ + class_count_ && i < modes_at_) return Kind::kClassDashpot;
   return Kind::kGlobal;
 }
 
@@ -119,15 +121,19 @@ std::vector<int> Parameters::AlongBodyEntries() const {
 
 SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
   SpringMassSystem system = base_;
+  Eigen::VectorXd field = Eigen::VectorXd::Zero(springs_);
+  if (mode_count() > 0) field = options_.modes * values.segment(modes_at_, mode_count());
   for (int e = 0; e < springs_; ++e) {
     const bool hand = IsControllerSpring(e);
     const double own_stiffness = stiffness_ < 0 ? 0 : values[stiffness_ + e];
     const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
-    system.stiffness[e] *= std::exp(values[hand ? kControllerStiffness : kStiffness] +
-                                    values[ClassStiffness(e)] + own_stiffness);
+    const double stiffness = values[hand ? kControllerStiffness : kStiffness] +
+                             values[ClassStiffness(e)] + field[e] + own_stiffness;
+    const double dashpot =
+        values[hand ? kControllerDashpot : kDashpot] + values[ClassDashpot(e)] + own_dashpot;
+    system.stiffness[e] *= std::exp(stiffness);
     if (options_.dashpots) {
-      system.dashpot[e] *= std::exp(values[hand ? kControllerDashpot : kDashpot] +
-                                    values[ClassDashpot(e)] + own_dashpot);
+      system.dashpot[e] *= std::exp(options_.loss_times ? stiffness + dashpot : dashpot);
     }
     if (stretch_ >= 0) {
       system.rest_length[e] =
@@ -148,12 +154,17 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
 Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringMassSystem& system,
                                     const SystemGradient& gradient) const {
   Eigen::VectorXd bar = Eigen::VectorXd::Zero(size_);
+  // forward: y = base exp(sum), so y_bar y is the derivative with respect to each
+  Eigen::VectorXd dashpots_bar = gradient.dashpot.cwiseProduct(system.dashpot);
+  if (!options_.dashpots) dashpots_bar.setZero();
+  Eigen::VectorXd stiffnesses_bar = gradient.stiffness.cwiseProduct(system.stiffness);
+  if (options_.loss_times) stiffnesses_bar += dashpots_bar;
+  if (mode_count() > 0) {
+    bar.segment(modes_at_, mode_count()) = options_.modes.transpose() * stiffnesses_bar;
+  }
   for (int e = 0; e < springs_; ++e) {
     const bool hand = IsControllerSpring(e);
-    // forward: y = base exp(sum), so y_bar y is the derivative with respect to
-    // each
-    const double stiffness_bar = gradient.stiffness[e] * system.stiffness[e];
-    const double dashpot_bar = options_.dashpots ? gradient.dashpot[e] * system.dashpot[e] : 0;
+    const double stiffness_bar = stiffnesses_bar[e], dashpot_bar = dashpots_bar[e];
     bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
     bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;
     bar[ClassStiffness(e)] += stiffness_bar;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What training moves: an unconstrained vector, and the map from it to a spring-mass system.
-//   stiffness_e   = base_e exp(global + class(e) + own_e)     global: apart for controller springs
-//   dashpot_e     = base_e exp(global + class(e) + own_e)
+//   stiffness_e   = base_e exp(global + class(e) + field(e) + own_e)
+//   dashpot_e     = base_e exp(global + class(e) + own_e); with loss times (dashpot / stiffness)
+//   for
+//                   dashpots, times stiffness_e / base stiffness_e, too
 //   rest_length_e = base_e exp(own_e); in a hanging net (hanging_net.h) the strains of all springs
 //                   in the base's positions have a factor exp(stretch), too
 //   drag          = base exp(.)
@@ -9,7 +11,8 @@
 //   values of the base's last effects: effect_entries.h
 // Zero is the base system. Springs of about the same rest length are one class: on a regular mesh
 // the springs along, across and diagonal, which in a homogeneous body are alike. The `own` parts
-// are deviations of single springs, held small by the prior.
+// are deviations of single springs, held small by the prior. The field is a sum of modes, smooth
+// along the body (spring_modes.h).
 #ifndef PHYSPRING_TRAINER_BODIES_PARAMETERS_H_
 #define PHYSPRING_TRAINER_BODIES_PARAMETERS_H_
 
@@ -31,6 +34,10 @@ struct ParameterOptions {
   bool length_classes = true;  // else all springs are of one class
   bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
   bool stretch = false;        // a factor for the strains of the base in its own positions
+  bool loss_times = false;     // dashpots follow the stiffnesses; their entries are of loss times
+  double class_jump = 1.03;    // a class ends where the sorted lengths jump by this factor
+  // springs x modes: what the field of stiffness is made of; empty: there is none
+  Eigen::MatrixXd modes = {};
 };
 
 class Parameters {
@@ -39,9 +46,9 @@ class Parameters {
 
   int size() const { return size_; }
   const SpringMassSystem& base() const { return base_; }
-  // What each entry is: 0 global (effects' values, too), 1 own stiffness, 2 own dashpot, 3 own rest
-  // length.
-  enum class Kind { kGlobal, kStiffness, kDashpot, kRestLength };
+  // What each entry is: global (stiffnesses of classes and effects' values, too), a class's
+  // dashpot, a mode of the field, or a spring's own stiffness, dashpot or rest length.
+  enum class Kind { kGlobal, kClassDashpot, kMode, kStiffness, kDashpot, kRestLength };
   Kind kind(int i) const;
   // The entries of one value for the whole body: not of classes, single springs, or values of
   // effects along the body, and none that does nothing.
@@ -65,6 +72,7 @@ class Parameters {
   double LengthInBase(int e) const;
   double StrainInBase(int e) const;
   int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
+  int mode_count() const { return static_cast<int>(options_.modes.cols()); }
   int ClassDashpot(int e) const { return classes_ + class_count_ + length_class_[e]; }
 
   SpringMassSystem base_;
@@ -74,6 +82,7 @@ class Parameters {
   std::vector<int> length_class_;                         // of each spring
   int classes_;                                           // offset of the classes' stiffness ...
   int class_count_;                                       // ... and dashpot after it
+  int modes_at_;                                          // offset of the field's modes
   int effects_at_;                                        // offset of the effects' values
   int stretch_ = -1;                                      // offset of the stretch; -1: none
   int stiffness_ = -1, dashpot_ = -1, rest_length_ = -1;  // offsets of the own parts; -1: none

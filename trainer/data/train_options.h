@@ -13,7 +13,7 @@
 namespace physpring {
 
 struct TrainOptions {
-  enum class Method { kFull, kTwoStage };
+  enum class Method { kFull, kSmooth, kTwoStage };
   Method method = Method::kFull;
   // Of single springs. Automatic: Gauss-Newton while it gets on, then Adam, which goes on where
   // contacts or chaotic motions make the residuals too rough for it.
@@ -23,13 +23,13 @@ struct TrainOptions {
   int epochs = 0;               // of the last stage; 0: the method's default
   int substeps = 0;             // a frame; 0: from the stability bound
   bool single_precision = false;
-  // Whether dashpots feel the controllers' velocity; empty: whatever predicts better (full), no
+  // Whether dashpots feel the controllers' velocity; empty: whatever predicts better, no
   // (two-stage, as PhysTwin).
   std::optional<bool> controller_velocity;
-  // Of friction on the ground; empty: whatever predicts better (full), elliptic (two-stage).
+  // Of friction on the ground; empty: whatever predicts better, elliptic (two-stage).
   std::optional<FrictionCone> cone;
   bool self_collision = false;        // particles collide with each other (two-stage only)
-  std::vector<EffectValues> effects;  // that the twin has, with these values (full only)
+  std::vector<EffectValues> effects;  // that the twin has, with these values (not two-stage)
   int threads = 1;
   std::uint64_t seed = 0;
 

@@ -8,6 +8,7 @@
 #include "trainer/fits/body_choice.h"
 #include "trainer/fits/chain_fit.h"
 #include "trainer/fits/factor_fit.h"
+#include "trainer/fits/smooth_fit.h"
 #include "trainer/fits/spring_fit.h"
 #include "twin/stability.h"
 
@@ -45,6 +46,10 @@ Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work
   const bool has_springs = choice.springs.size() > 0 && GaussNewtonSteps(options) > 0;
   if (!body.kind->has_single_springs()) {
     model = FitChain(model, data, options, work.Part("chain", kChosen, 1));
+  } else if (options.method == TrainOptions::Method::kSmooth) {
+    return TwinOf(FitSmoothBody(model, FitEpisodes(data, kMostCommonRecordings), options,
+                                work.Part("smooth body", kChosen, 1)),
+                  body, data, options);
   } else if (!has_springs) {
     model.factors = model.start;
     model = FitCommonFactors(model, FitEpisodes(data, kMostCommonRecordings), options, kAllGains,

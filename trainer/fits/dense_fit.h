@@ -5,6 +5,7 @@
 //   falls to 0 (observer.h); left out where the choice has fitted single springs
 //   single springs (spring_fit.h); a chain that bends (bodies/bending_chain.h) has its common
 //   factors fitted further instead, by free motions (chain_fit.h)
+// With --method smooth, a smooth body (smooth_fit.h) comes in place of all that follows the choice.
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
 // frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FITS_DENSE_FIT_H_

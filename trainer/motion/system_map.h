@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "twin/simulator.h"
 #include "twin/spring_mass_system.h"
@@ -18,6 +19,13 @@ class SystemMap {
   SystemMap(const Model& model)  // NOLINT(google-explicit-constructor): any model is a map
       : SystemMap(std::make_shared<const Model>(model)) {}
 
+  // A map that has no adjoint: MotionProblem gives residuals alone.
+  static SystemMap OfResiduals(std::function<SpringMassSystem(const Eigen::VectorXd&)> apply) {
+    SystemMap map;
+    map.apply_ = std::move(apply);
+    return map;
+  }
+
   SpringMassSystem Apply(const Eigen::VectorXd& x) const { return apply_(x); }
 
   // d loss / d x, from the derivatives with respect to the system Apply(x).
@@ -27,6 +35,7 @@ class SystemMap {
   }
 
  private:
+  SystemMap() = default;
   template <class Model>
   explicit SystemMap(const std::shared_ptr<const Model>& model)
       : apply_([model](const Eigen::VectorXd& x) { return model->Apply(x); }),

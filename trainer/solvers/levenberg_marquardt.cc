@@ -38,54 +38,107 @@ Linearisation Linearise(const ResidualFunction& residuals, const Eigen::VectorXd
   return result;
 }
 
+// The better of two trials that lower the objective: a step with each of two dampings.
+struct Trial {
+  Eigen::VectorXd x, r;
+  double objective;
+  double damping;  // for the next step
+};
+
+// What a step minimises: |r|^2 / variance + prior.
+class Objective {
+ public:
+  Objective(const ResidualFunction& residuals, const LevenbergMarquardtOptions& options,
+            double variance, Eigen::Index size)
+      : residuals_(residuals),
+        options_(options),
+        variance_(variance),
+        precision_(options.precisions.size() > 0
+                       ? options.precisions
+                       : Eigen::VectorXd::Constant(size, options.precision)) {}
+
+  double At(const Eigen::VectorXd& r, const Eigen::VectorXd& x) const {
+    return r.squaredNorm() / variance_ + precision_.dot(x.cwiseAbs2());
+  }
+
+  // Nothing where no trial of up to `attempts` pairs, with more and more damping, is better.
+  std::optional<Trial> Try(const Eigen::VectorXd& x, const Eigen::VectorXd& r,
+                           const Eigen::MatrixXd& jacobian, double damping, int attempts) const {
+    Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance_;
+    normal.diagonal() += precision_;
+    const Eigen::VectorXd gradient =
+        jacobian.transpose() * r / variance_ + precision_.cwiseProduct(x);
+    for (int attempt = 0; attempt < attempts; ++attempt, damping *= 30) {
+      std::optional<Trial> better = TryPair(x, normal, gradient, damping, At(r, x));
+      if (better) return better;
+    }
+    return {};
+  }
+
+ private:
+  std::optional<Trial> TryPair(const Eigen::VectorXd& x, const Eigen::MatrixXd& normal,
+                               const Eigen::VectorXd& gradient, double damping,
+                               double least) const {
+    constexpr std::array<double, 2> kFactors = {1, 0.1};
+    std::array<Eigen::VectorXd, 2> tried;
+    std::array<std::optional<Eigen::VectorXd>, 2> r;
+    ParallelFor(2, options_.threads, [&](int t) {
+      Eigen::MatrixXd damped = normal;
+      damped.diagonal() += damping * kFactors[t] * normal.diagonal();
+      Eigen::VectorXd step = -damped.ldlt().solve(gradient);
+      step *= std::min(1.0, options_.longest_step / std::max(1e-300, step.cwiseAbs().maxCoeff()));
+      tried[t] = x + step;
+      if (tried[t].allFinite()) r[t] = residuals_(tried[t]);
+    });
+    std::optional<Trial> better;
+    for (int t = 0; t < 2; ++t) {
+      if (!r[t] || At(*r[t], tried[t]) >= least) continue;
+      least = At(*r[t], tried[t]);
+      better = {tried[t], *r[t], least, std::clamp(damping * (t == 0 ? 0.5 : 0.1), 1e-6, 1e6)};
+    }
+    return better;
+  }
+
+  const ResidualFunction& residuals_;
+  const LevenbergMarquardtOptions& options_;
+  double variance_;
+  Eigen::VectorXd precision_;
+};
+
 }  // namespace
 
 LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals,
                                                const LevenbergMarquardtState& state,
-                                               const LevenbergMarquardtOptions& options) {
+                                               const LevenbergMarquardtOptions& options,
+                                               const ResidualFunction& nearby) {
+  constexpr int kAttempts = 4;
+  constexpr double kGoesOn = 0.1;  // an update is worth it that gains this share of the first step
   LevenbergMarquardtState next = state;
   next.converged = true;
-  const auto [r, jacobian] = Linearise(residuals, state.x, options);
+  auto [r, jacobian] = Linearise(nearby ? nearby : residuals, state.x, options);
   if (!r || r->size() == 0) return next;
   const double count = static_cast<double>(r->size());
   const double variance = std::max(r->squaredNorm() / count, 1e-300);
   next.mean_square = variance;
-  const auto objective = [&](const Eigen::VectorXd& residual, const Eigen::VectorXd& x) {
-    return residual.squaredNorm() / variance + options.precision * x.squaredNorm();
-  };
-  const double before = objective(*r, state.x);
-  Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
-  normal.diagonal().array() += options.precision;
-  const Eigen::VectorXd gradient =
-      jacobian.transpose() * *r / variance + options.precision * state.x;
-
-  double damping = state.damping;
-  for (int attempt = 0; attempt < 4; ++attempt, damping *= 30) {
-    // two dampings at once; the better one counts
-    constexpr std::array<double, 2> kFactors = {1, 0.1};
-    std::array<Eigen::VectorXd, 2> x;
-    std::array<std::optional<Eigen::VectorXd>, 2> trial;
-    ParallelFor(2, options.threads, [&](int t) {
-      Eigen::MatrixXd damped = normal;
-      damped.diagonal() += damping * kFactors[t] * normal.diagonal();
-      Eigen::VectorXd step = -damped.ldlt().solve(gradient);
-      step *= std::min(1.0, options.longest_step / std::max(1e-300, step.cwiseAbs().maxCoeff()));
-      x[t] = state.x + step;
-      if (x[t].allFinite()) trial[t] = residuals(x[t]);
-    });
-    double best = before;
-    for (int t = 0; t < 2; ++t) {
-      if (!trial[t] || objective(*trial[t], x[t]) >= best) continue;
-      best = objective(*trial[t], x[t]);
-      next.x = x[t];
-      next.mean_square = trial[t]->squaredNorm() / count;
-      next.damping = std::clamp(damping * (t == 0 ? 0.5 : 0.1), 1e-6, 1e6);
-    }
-    if (best < before) {
-      next.converged = before - best < options.tolerance * before;
-      return next;
-    }
+  const Objective objective(residuals, options, variance, state.x.size());
+  const double before = objective.At(*r, state.x);
+  double now = before;
+  for (int update = 0; update <= options.updates; ++update) {
+    const std::optional<Trial> better =
+        objective.Try(next.x, *r, jacobian, next.damping, update == 0 ? kAttempts : 1);
+    if (!better) break;
+    const double gain = now - better->objective;
+    const Eigen::VectorXd step = better->x - next.x;
+    // Broyden's update (Math. Comp. 19, 1965): the least change that explains the step
+    jacobian += (better->r - *r - jacobian * step) * (step.transpose() / step.squaredNorm());
+    r = better->r;
+    now = better->objective;
+    next.x = better->x;
+    next.damping = better->damping;
+    next.mean_square = r->squaredNorm() / count;
+    if (gain <= std::max(kGoesOn * (before - now), options.tolerance * before)) break;
   }
+  next.converged = before - now < options.tolerance * before;
   return next;
 }
 

@@ -11,11 +11,22 @@
 
 namespace physpring {
 
+// Residuals at x (always the same number); nothing where the model cannot be evaluated. Called from
+// several threads at once.
+using ResidualFunction = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& x)>;
+
+// The prior's precision, 1 / (standard deviation of an entry)^2.
+inline constexpr double kLevenbergMarquardtPrecision = 0.25;
+
 struct LevenbergMarquardtOptions {
-  double difference = 1e-3;  // step of the forward differences
-  double precision = 0.25;   // the prior's: 1 / (standard deviation of an entry)^2
-  double longest_step = 1;   // no entry of x moves further in one step
-  double tolerance = 2e-3;   // converged when a step lowers the objective by less than this share
+  double difference = 1e-3;                         // step of the forward differences
+  double precision = kLevenbergMarquardtPrecision;  // the prior's of every entry ...
+  Eigen::VectorXd precisions = {};                  // ... or of each, if not empty
+  double longest_step = 1;                          // no entry of x moves further in one step
+  double tolerance = 2e-3;  // converged when a step lowers the objective by less than this share
+  // So many times the step goes on with the Jacobian of its start, updated by Broyden's rule, while
+  // each time gains a tenth of the first.
+  int updates = 0;
   int threads = 1;
 };
 
@@ -26,16 +37,16 @@ struct LevenbergMarquardtState {
   bool converged = false;
 };
 
-// Residuals at x (always the same number); nothing where the model cannot be evaluated. Called from
-// several threads at once.
-using ResidualFunction = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& x)>;
-
 // One step. The variance is the mean of r^2 at the step's start, so the prior counts as much as
 // it would if the misfit were noise of that size. Where no trial is better, x stays and the state
 // is converged; also where r(x) does not exist.
+// `nearby` (empty: `residuals`) gives the residuals that are differentiated. At state.x it must
+// agree with `residuals`; elsewhere it may do what makes them smoother, as keep the number of
+// sub-steps.
 LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals,
                                                const LevenbergMarquardtState& state,
-                                               const LevenbergMarquardtOptions& options);
+                                               const LevenbergMarquardtOptions& options,
+                                               const ResidualFunction& nearby = {});
 
 }  // namespace physpring
 

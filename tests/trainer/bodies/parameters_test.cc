@@ -12,8 +12,8 @@
 namespace physpring {
 namespace {
 
-constexpr ParameterOptions kAll{true, true, true, true};
-constexpr ParameterOptions kCommon{false, false, false, false};
+const ParameterOptions kAll{true, true, true, true};
+const ParameterOptions kCommon{false, false, false, false};
 
 Eigen::VectorXd Uniform(int size, double bound, Random* random) {
   Eigen::VectorXd values(size);
@@ -61,6 +61,19 @@ SpringMassSystem Chain(const std::vector<double>& lengths) {
     AddSpring(static_cast<int>(i), static_cast<int>(i) + 1, 10, lengths[i], 0.1, &chain);
   }
   return chain;
+}
+
+// With classes that differ little in length, dashpots by their loss times, and a field of two
+// modes.
+ParameterOptions Smooth(bool own) {
+  ParameterOptions options{own, own, own, true};
+  options.loss_times = true;
+  options.class_jump = 1.2;
+  const SpringMassSystem base = RandomSystem(10, 2, 3);
+  Random random(11);
+  options.modes.resize(base.spring_count(), 2);
+  for (double& value : options.modes.reshaped()) value = random(-1, 1);
+  return options;
 }
 
 class ParametersAdjoint : public testing::TestWithParam<ParameterOptions> {};
@@ -142,7 +155,36 @@ INSTANTIATE_TEST_SUITE_P(Options, ParametersAdjoint,
                          testing::Values(kAll, kCommon, ParameterOptions{true, false, false, false},
                                          ParameterOptions{false, true, false, true},
                                          ParameterOptions{true, false, true, false, 0, 1, true,
-                                                          true, true}));
+                                                          true, true},
+                                         Smooth(false), Smooth(true)));
+
+TEST(Parameters, DashpotsFollowStiffnessesWhereTheirLossTimesAreFitted) {
+  const SpringMassSystem base = RandomSystem(10, 2, 3);
+  const Parameters parameters(base, Smooth(false));
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(parameters.size());
+  values[0] = values[1] = std::log(3.0);  // all stiffnesses
+  values[2] = std::log(2.0);              // loss times of springs between particles
+  const SpringMassSystem system = parameters.Apply(values);
+  for (int e = 0; e < base.spring_count(); ++e) {
+    const bool hand = base.springs[e][1] >= base.node_count();
+    EXPECT_NEAR(system.dashpot[e] / base.dashpot[e], hand ? 3 : 6, 1e-12) << e;
+  }
+}
+
+TEST(Parameters, ModesMoveTheStiffnessOfAllSprings) {
+  const SpringMassSystem base = RandomSystem(10, 2, 3);
+  const ParameterOptions options = Smooth(false);
+  const Parameters parameters(base, options);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(parameters.size());
+  const int mode = parameters.size() - 1;  // there are no effects
+  ASSERT_EQ(parameters.kind(mode), Parameters::Kind::kMode);
+  values[mode] = 0.5;
+  const SpringMassSystem system = parameters.Apply(values);
+  for (int e = 0; e < base.spring_count(); ++e) {
+    EXPECT_NEAR(system.stiffness[e] / base.stiffness[e], std::exp(0.5 * options.modes(e, 1)),
+                1e-12);
+  }
+}
 
 TEST(Parameters, ZeroIsTheBaseSystem) {
   const SpringMassSystem base = RandomSystem(10, 2, 3);

@@ -69,6 +69,32 @@ TEST(FitDense, ExplainsWhatASystemOfItsKindDid) {
   EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
 }
 
+// The rope's springs are of one law but for a factor that is smooth along it, and have one loss
+// time.
+TEST(FitDense, FindsTheMaterialOfASmoothBody) {
+  FitData data;
+  Recording recording = SwungRope(kParticles, 40);
+  SpringMassSystem truth =
+      MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6});
+  ScaleToSubsteps(1 / recording.fps, 12, 0.7, &truth);
+  truth.dashpot = 2e-3 * truth.stiffness;
+  MoveAs(truth, true, &recording);
+  data.recordings.push_back(recording);
+  data.continuous_recording.push_back(0);
+  TrainOptions options = Options();
+  options.epochs = 0;
+  options.method = TrainOptions::Method::kSmooth;
+  options.controller_velocity = true;
+  const SpringMassSystem found = Fit(data, options).levels[0].system;
+  ASSERT_EQ(found.springs, truth.springs);
+  EXPECT_EQ(found.rest_length, truth.rest_length);  // no spring has a value of its own
+  const Eigen::VectorXd ratio = found.stiffness.cwiseQuotient(truth.stiffness);
+  std::vector<double> ratios(ratio.begin(), ratio.end());
+  std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+  EXPECT_NEAR(ratios[ratios.size() / 2], 1, 0.05);
+  EXPECT_NEAR(found.drag, truth.drag, 0.02 * truth.drag);
+}
+
 TEST(FitDense, KeepsTheEffectsThatItIsGiven) {
   const std::vector<EffectValues> wind = {{"air_drag", Eigen::Vector4d(0.02, 3, 0, 0)}};
   const FitData data = Swung(1, wind);

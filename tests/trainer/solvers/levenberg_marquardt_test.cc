@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr LevenbergMarquardtOptions kNoPrior{.precision = 0};
+const LevenbergMarquardtOptions kNoPrior{.precision = 0};
 
 // r_i = a exp(-b t_i) - 2 exp(-0.7 t_i): zero at (a, b) = (2, 0.7).
 std::optional<Eigen::VectorXd> Decay(const Eigen::VectorXd& x) {
@@ -57,6 +57,47 @@ TEST(LevenbergMarquardt, PriorCountsAgainstTheMisfitAtTheStart) {
   const auto state = LevenbergMarquardtStep(linear, start, options);
   EXPECT_NEAR(state.x[0], 0.5, 1e-5);
   EXPECT_NEAR(state.x[1], 0.5, 1e-5);
+}
+
+TEST(LevenbergMarquardt, EachEntryMayHaveAPriorOfItsOwn) {
+  const auto linear = [](const Eigen::VectorXd& x) {
+    return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(2, 2));
+  };
+  LevenbergMarquardtOptions options{.longest_step = 10};
+  options.precisions = Eigen::Vector2d(0.75, 0.25);
+  LevenbergMarquardtState start{Eigen::Vector2d(0, 0)};
+  start.damping = 1e-6;
+  const auto state = LevenbergMarquardtStep(linear, start, options);
+  EXPECT_NEAR(state.x[0], 0.5, 1e-5);
+  EXPECT_NEAR(state.x[1], 1, 1e-5);
+}
+
+TEST(LevenbergMarquardt, GoesOnWithAnUpdatedJacobianForTwoEvaluationsEach) {
+  const LevenbergMarquardtState start{Eigen::Vector2d(0.5, -0.3)};
+  LevenbergMarquardtOptions options{.precision = 0};
+  int calls = 0;
+  const auto counted = [&](const Eigen::VectorXd& x) {
+    ++calls;
+    return Decay(x);
+  };
+  const double once = LevenbergMarquardtStep(counted, start, options).mean_square;
+  const int calls_of_one = calls;
+  calls = 0;
+  options.updates = 3;
+  const double updated = LevenbergMarquardtStep(counted, start, options).mean_square;
+  EXPECT_LT(updated, 0.5 * once);
+  EXPECT_GT(calls, calls_of_one);
+  EXPECT_LE(calls, calls_of_one + 3 * 2);
+}
+
+TEST(LevenbergMarquardt, DifferentiatesWhatItIsToldTo) {
+  // to differences, the second entry does nothing
+  const auto blind = [](const Eigen::VectorXd& x) { return Decay(Eigen::Vector2d(x[0], -0.3)); };
+  const LevenbergMarquardtState start{Eigen::Vector2d(0.5, -0.3)};
+  const LevenbergMarquardtOptions options{.precision = 1e-9};
+  const auto state = LevenbergMarquardtStep(Decay, start, options, blind);
+  EXPECT_NE(state.x[0], 0.5);
+  EXPECT_NEAR(state.x[1], -0.3, 1e-6);
 }
 
 TEST(LevenbergMarquardt, StaysWhereResidualsDoNotExist) {

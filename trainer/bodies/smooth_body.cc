@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/bodies/smooth_body.h"
+
+#include "trainer/bodies/spring_modes.h"
+#include "trainer/solvers/levenberg_marquardt.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kModes = 8;
+constexpr double kClassJump = 1.01;  // true and superfluous springs may differ in length by 1.5 %
+// Standard deviations of the prior.
+constexpr double kClassLossTime = 0.3, kMode = 0.5;
+
+ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
+                               const BodyKind& kind) {
+  ParameterOptions options;
+  options.spring_stiffness = options.spring_dashpot = false;
+  options.contact = recording.ground.has_value();
+  options.loss_times = true;
+  options.class_jump = kClassJump;
+  options.modes = SpringModes(start, kModes);
+  kind.Free(start, &options);
+  return options;
+}
+
+}  // namespace
+
+SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
+                       const BodyKind& kind, double most_rate)
+    : factors_(start, SmoothOptions(start, recording, kind)),
+      timestep_(1 / most_rate / kStepSafety) {}
+
+Eigen::VectorXd SmoothBody::Precision() const {
+  Eigen::VectorXd precision = Eigen::VectorXd::Constant(size(), kLevenbergMarquardtPrecision);
+  const auto set = [&](int i, double deviation) { precision[i] = 1 / (deviation * deviation); };
+  for (int i = 0; i < size(); ++i) {
+    const Parameters::Kind kind = factors_.kind(i);
+    if (kind == Parameters::Kind::kClassDashpot) set(i, kClassLossTime);
+    if (kind == Parameters::Kind::kMode) set(i, kMode);
+  }
+  return precision;
+}
+
+SpringMassSystem SmoothBody::Apply(const Eigen::VectorXd& x) const {
+  SpringMassSystem system = factors_.Apply(x);
+  LimitDashpots(timestep_, &system);
+  return system;
+}
+
+}  // namespace physpring

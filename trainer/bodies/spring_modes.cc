@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/bodies/spring_modes.h"
+
+#include <Spectra/MatOp/SparseSymShiftSolve.h>
+#include <Spectra/SymEigsShiftSolver.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace physpring {
+namespace {
+
+constexpr double kZero = 1e-9;  // eigenvalues up to so many mean diagonal entries are 0
+constexpr int kDense = 64;      // with fewer points all eigenvectors are computed
+
+// columns: eigenvectors in the order of their eigenvalues, as many as `values`
+struct Modes {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+Eigen::SparseMatrix<double> Laplacian(const SpringMassSystem& system) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    const auto [a, b] = system.springs[e];
+    const double weight = 1 / (system.rest_length[e] * system.rest_length[e]);
+    entries.emplace_back(a, a, weight);
+    entries.emplace_back(b, b, weight);
+    entries.emplace_back(a, b, -weight);
+    entries.emplace_back(b, a, -weight);
+  }
+  Eigen::SparseMatrix<double> laplacian(system.position.cols(), system.position.cols());
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  return laplacian;
+}
+
+Modes LowestModes(const Eigen::SparseMatrix<double>& laplacian, int count) {
+  const auto points = static_cast<int>(laplacian.cols());
+  if (points >= kDense && 3 * count < points) {
+    // the shift makes the matrix regular: its lowest eigenvalue is 0
+    Spectra::SparseSymShiftSolve<double> operation(laplacian);
+    Spectra::SymEigsShiftSolver<Spectra::SparseSymShiftSolve<double>> solver(
+        operation, count, std::min(points, 3 * count), -1e-3 * laplacian.diagonal().mean());
+    solver.init();
+    const auto found = solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10,
+                                      Spectra::SortRule::SmallestAlge);
+    if (found == count) return {solver.eigenvalues(), solver.eigenvectors()};
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(laplacian)};
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+}  // namespace
+
+Eigen::MatrixXd SpringModes(const SpringMassSystem& system, int count) {
+  const auto points = static_cast<int>(system.position.cols());
+  const Eigen::SparseMatrix<double> laplacian = Laplacian(system);
+  const double zero = kZero * laplacian.diagonal().mean();
+  Modes modes;
+  // each object has an eigenvalue 0 of its own
+  int zeros = 1;
+  for (int asked = std::min(count + 1, points);; asked = std::min(2 * asked, points)) {
+    modes = LowestModes(laplacian, asked);
+    zeros = static_cast<int>((modes.values.array() <= zero).count());
+    if (asked == points || modes.values.size() >= zeros + count) break;
+  }
+  const int kept = std::min(count, static_cast<int>(modes.values.size()) - zeros);
+  Eigen::MatrixXd fields(system.spring_count(), std::max(0, kept));
+  for (int m = 0; m < fields.cols(); ++m) {
+    const auto mode = modes.vectors.col(zeros + m);
+    for (int e = 0; e < system.spring_count(); ++e) {
+      fields(e, m) = 0.5 * (mode[system.springs[e][0]] + mode[system.springs[e][1]]);
+    }
+    fields.col(m) /= std::sqrt(fields.col(m).squaredNorm() / system.spring_count());
+    const auto first = std::find_if(fields.col(m).begin(), fields.col(m).end(),
+                                    [](double value) { return std::abs(value) > 0.1; });
+    if (first != fields.col(m).end() && *first < 0) fields.col(m) *= -1;
+  }
+  return fields;
+}
+
+}  // namespace physpring

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Smooth fields over the springs of a body: the lowest modes of its spring graph.
+#ifndef PHYSPRING_TRAINER_BODIES_SPRING_MODES_H_
+#define PHYSPRING_TRAINER_BODIES_SPRING_MODES_H_
+
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+// springs x modes, at most `count` of them: the eigenvectors with the lowest eigenvalues above 0 of
+// the graph Laplacian of all nodes and controllers, whose links weigh 1 / L^2. A spring has the
+// mean of its two ends. The root mean square of each mode is 1, and its first entry above a tenth
+// of that is positive.
+Eigen::MatrixXd SpringModes(const SpringMassSystem& system, int count);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_BODIES_SPRING_MODES_H_
