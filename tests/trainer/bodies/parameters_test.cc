@@ -206,7 +206,9 @@ TEST(Parameters, EveryEntryHasItsKind) {
   EXPECT_EQ(globals, 7 + 2 * Classes(base));
   using Kind = Parameters::Kind;
   EXPECT_EQ(parameters.kind(0), Kind::kGlobal);
-  EXPECT_EQ(parameters.kind(globals - 1), Kind::kGlobal);
+  EXPECT_EQ(parameters.kind(globals - Classes(base) - 1), Kind::kGlobal);
+  EXPECT_EQ(parameters.kind(globals - Classes(base)), Kind::kClassDashpot);
+  EXPECT_EQ(parameters.kind(globals - 1), Kind::kClassDashpot);
   EXPECT_EQ(parameters.kind(globals), Kind::kStiffness);
   EXPECT_EQ(parameters.kind(globals + springs), Kind::kDashpot);
   EXPECT_EQ(parameters.kind(globals + 3 * springs - 1), Kind::kRestLength);
