@@ -34,25 +34,27 @@ EntryScale ScaleOf(Parameters::Kind kind) {
   return {};
 }
 
-ParameterOptions Freed(const SpringMassSystem& base, const Recording& recording,
-                       const BodyKind& kind, bool springs) {
+}  // namespace
+
+ParameterOptions CommonOptions(const SpringMassSystem& base, const Recording& recording,
+                               const BodyKind& kind) {
   ParameterOptions options;
-  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = springs;
+  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = false;
   options.contact = recording.ground.has_value();
   kind.Free(base, &options);
   return options;
 }
 
-}  // namespace
-
 Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording,
                          const BodyKind& kind) {
-  return {base, Freed(base, recording, kind, false)};
+  return {base, CommonOptions(base, recording, kind)};
 }
 
 Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording,
                          const BodyKind& kind) {
-  return {base, Freed(base, recording, kind, true)};
+  ParameterOptions options = CommonOptions(base, recording, kind);
+  options.spring_stiffness = options.spring_dashpot = options.spring_rest_length = true;
+  return {base, options};
 }
 
 GaussNewtonOptions SpringPrior(const Parameters& parameters) {

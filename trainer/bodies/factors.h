@@ -12,6 +12,11 @@
 
 namespace physpring {
 
+// What is free in the common factors of a base: the contact where there is a ground, and what the
+// kind of body adds.
+ParameterOptions CommonOptions(const SpringMassSystem& base, const Recording& recording,
+                               const BodyKind& kind);
+
 // The factors that all springs share (parameters.h), those of the ground where there is one, and
 // what the kind of body adds.
 Parameters CommonFactors(const SpringMassSystem& base, const Recording& recording,

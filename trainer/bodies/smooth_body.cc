@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/smooth_body.h"
 
+#include "trainer/bodies/factors.h"
 #include "trainer/bodies/spring_modes.h"
 #include "trainer/solvers/levenberg_marquardt.h"
 #include "twin/stability.h"
@@ -15,13 +16,10 @@ constexpr double kClassLossTime = 0.3, kMode = 0.5;
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
                                const BodyKind& kind) {
-  ParameterOptions options;
-  options.spring_stiffness = options.spring_dashpot = false;
-  options.contact = recording.ground.has_value();
+  ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
   options.class_jump = kClassJump;
   options.modes = SpringModes(start, kModes);
-  kind.Free(start, &options);
   return options;
 }
 

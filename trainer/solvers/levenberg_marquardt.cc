@@ -128,15 +128,18 @@ LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals
         objective.Try(next.x, *r, jacobian, next.damping, update == 0 ? kAttempts : 1);
     if (!better) break;
     const double gain = now - better->objective;
-    const Eigen::VectorXd step = better->x - next.x;
-    // Broyden's update (Math. Comp. 19, 1965): the least change that explains the step
-    jacobian += (better->r - *r - jacobian * step) * (step.transpose() / step.squaredNorm());
+    const Eigen::VectorXd step = better->x - next.x, change = better->r - *r;
     r = better->r;
     now = better->objective;
     next.x = better->x;
     next.damping = better->damping;
     next.mean_square = r->squaredNorm() / count;
-    if (gain <= std::max(kGoesOn * (before - now), options.tolerance * before)) break;
+    if (update == options.updates ||
+        gain <= std::max(kGoesOn * (before - now), options.tolerance * before)) {
+      break;
+    }
+    // Broyden's update (Math. Comp. 19, 1965): the least change that explains the step
+    jacobian += (change - jacobian * step) * (step.transpose() / step.squaredNorm());
   }
   next.converged = before - now < options.tolerance * before;
   return next;

@@ -69,8 +69,7 @@ TEST(FitDense, ExplainsWhatASystemOfItsKindDid) {
   EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
 }
 
-// The rope's springs are of one law but for a factor that is smooth along it, and have one loss
-// time.
+// The rope's springs have one axial stiffness and one loss time.
 TEST(FitDense, FindsTheMaterialOfASmoothBody) {
   FitData data;
   Recording recording = SwungRope(kParticles, 40);

@@ -16,6 +16,17 @@ std::optional<Eigen::VectorXd> Decay(const Eigen::VectorXd& x) {
   return Eigen::VectorXd(x[0] * (-x[1] * t).exp() - 2 * (-0.7 * t).exp());
 }
 
+// One step, hardly damped, of r = x - (2, 2) from x = 0.
+LevenbergMarquardtState LinearStep(const LevenbergMarquardtOptions& options) {
+  LevenbergMarquardtState start{Eigen::Vector2d(0, 0)};
+  start.damping = 1e-6;
+  return LevenbergMarquardtStep(
+      [](const Eigen::VectorXd& x) {
+        return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(2, 2));
+      },
+      start, options);
+}
+
 LevenbergMarquardtState Steps(const ResidualFunction& residuals, LevenbergMarquardtState state,
                               const LevenbergMarquardtOptions& options, int most) {
   for (int i = 0; i < most && !state.converged; ++i) {
@@ -48,26 +59,16 @@ TEST(LevenbergMarquardt, NoEntryMovesFurtherThanTheLongestStep) {
 
 // r = x - (2, 2) with variance 4 at x = 0: (x - 2) / 4 + precision x = 0.
 TEST(LevenbergMarquardt, PriorCountsAgainstTheMisfitAtTheStart) {
-  const auto linear = [](const Eigen::VectorXd& x) {
-    return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(2, 2));
-  };
   LevenbergMarquardtOptions options{.precision = 0.75, .longest_step = 10};
-  LevenbergMarquardtState start{Eigen::Vector2d(0, 0)};
-  start.damping = 1e-6;
-  const auto state = LevenbergMarquardtStep(linear, start, options);
+  const LevenbergMarquardtState state = LinearStep(options);
   EXPECT_NEAR(state.x[0], 0.5, 1e-5);
   EXPECT_NEAR(state.x[1], 0.5, 1e-5);
 }
 
 TEST(LevenbergMarquardt, EachEntryMayHaveAPriorOfItsOwn) {
-  const auto linear = [](const Eigen::VectorXd& x) {
-    return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(2, 2));
-  };
   LevenbergMarquardtOptions options{.longest_step = 10};
   options.precisions = Eigen::Vector2d(0.75, 0.25);
-  LevenbergMarquardtState start{Eigen::Vector2d(0, 0)};
-  start.damping = 1e-6;
-  const auto state = LevenbergMarquardtStep(linear, start, options);
+  const LevenbergMarquardtState state = LinearStep(options);
   EXPECT_NEAR(state.x[0], 0.5, 1e-5);
   EXPECT_NEAR(state.x[1], 1, 1e-5);
 }
