@@ -22,8 +22,9 @@ Points PlaceAcross(const SpringMassSystem& system);
 Eigen::MatrixXd KnotWeights(const Eigen::VectorXd& coordinate, int knots);
 
 // For each node, how much a thing at `place` (m, in the reference configuration) is attached to it:
-// exp(-|position - place|^2 / 2 r^2), scaled to a sum of 1; r is half the mean distance of a node
-// to its nearest one along a spring, so that a thing on a node is on this one for the most part.
+// exp(-|position - place|^2 / 2 r^2), or 0 below exp(-200), scaled to a sum of 1; r is half the
+// mean distance of a node to its nearest one along a spring, so that a thing on a node is on this
+// one for the most part.
 Eigen::VectorXd PatchWeights(const SpringMassSystem& system, const Eigen::Vector3d& place);
 
 // Adds to place_bar, given d loss / d weights, at the weights that belong to `place`.
