@@ -89,7 +89,7 @@ void Register(const char* precision) {
   constexpr int kSizes[][2] = {{45, 250}, {838, 7344}, {1050, 10099}, {1243, 13129}, {2000, 30000}};
   for (const auto& size : kSizes) {
     const int nodes = size[0], springs = size[1];
-    for (const char* name : {"scalar", "avx2"}) {
+    for (std::string_view name : kKernelNames) {
       const Kernel<Real>* kernel = FindKernel<Real>(name);
       if (kernel == nullptr) continue;
       const auto add = [&](const std::string& what, void (Rope<Real>::*function)(), bool ground,

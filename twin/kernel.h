@@ -14,11 +14,12 @@
 namespace physpring {
 
 inline constexpr int kSpringBlock = 4;
+inline constexpr int kBlocksAtOnce = 4;  // at most, of any kernel
 
 // The springs, in blocks of 4 that share their first node (spring_blocks.h).
 template <class Real>
 struct SpringView {
-  int blocks;                     // even
+  int blocks;                     // a multiple of kBlocksAtOnce
   const int* a;                   // (blocks) the node that the springs of a block share
   const int* b;                   // (4 blocks) the other node of each spring
   const Real* stiffness;          // (4 blocks) k, N/m

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel for AVX2: 8 springs (two blocks) at a time in float, 4 (one block) in double. This
 // file alone is compiled with -mavx2.
-#include "twin/kernel_avx2.h"
-
 #include <immintrin.h>
 
+#include "twin/instruction_sets.h"
 #include "twin/kernel_vector.h"
 
 namespace physpring {

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <vector>
 
 #include "twin/error.h"
-#include "twin/kernel_avx2.h"
+#include "twin/instruction_sets.h"
 #include "twin/node_update.h"
 #include "twin/quote.h"
 #include "twin/spring_force.h"
@@ -26,23 +27,35 @@ constexpr Kernel<Real> kScalar = {"scalar",
 
 }  // namespace
 
+bool HasAvx512() {
+#ifdef __x86_64__
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl");
+#else
+  return false;
+#endif
+}
+
 template <class Real>
 const Kernel<Real>* FindKernel(std::string_view name) {
   if (name == "scalar") return &kScalar<Real>;
 #ifdef __x86_64__
   if (name == "avx2" && __builtin_cpu_supports("avx2")) return &Avx2Kernel<Real>();
+  if (name == "avx512" && HasAvx512()) return &Avx512Kernel<Real>();
 #endif
   return nullptr;
 }
 
 template <class Real>
 const Kernel<Real>& ChooseKernel(std::string_view wish) {
-  const Kernel<Real>* best = FindKernel<Real>("avx2");
-  const Kernel<Real>* kernel = !wish.empty() ? FindKernel<Real>(wish) : best;
+  std::vector<std::string_view> names;  // the fastest last
+  for (std::string_view name : kKernelNames) {
+    if (FindKernel<Real>(name) != nullptr) names.push_back(name);
+  }
+  const Kernel<Real>* kernel = FindKernel<Real>(wish.empty() ? names.back() : wish);
   if (kernel != nullptr) return *kernel;
-  if (wish.empty()) return kScalar<Real>;
-  throw Error(fmt::format("PHYSPRING_KERNEL={}: is no kernel for this processor; scalar{}",
-                          Quote(wish), best != nullptr ? " and avx2 are" : " is"));
+  throw Error(fmt::format("PHYSPRING_KERNEL={}: is no kernel for this processor; these are: {}",
+                          Quote(wish), fmt::join(names, ", ")));
 }
 
 template <class Real>

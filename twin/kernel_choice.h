@@ -3,13 +3,20 @@
 #ifndef PHYSPRING_TWIN_KERNEL_CHOICE_H_
 #define PHYSPRING_TWIN_KERNEL_CHOICE_H_
 
+#include <array>
 #include <string_view>
 
 #include "twin/kernel.h"
 
 namespace physpring {
 
-// The kernel named "scalar" or "avx2"; null where the processor cannot run it.
+// Whether this processor has the parts of AVX-512 that kernels are compiled for.
+bool HasAvx512();
+
+// The names of all kernels, those that are faster later.
+inline constexpr std::array<std::string_view, 3> kKernelNames = {"scalar", "avx2", "avx512"};
+
+// The kernel of that name; null where the processor cannot run it.
 template <class Real>
 const Kernel<Real>* FindKernel(std::string_view name);
 

@@ -18,6 +18,7 @@ struct VectorKernel {
   using Quad = typename Lanes::Quad;  // the coordinates of a node, and 0
   using Law = SpringLaw<Lanes>;
   static constexpr int kSprings = kSpringBlock * Lanes::kBlocks;  // in a vector
+  static_assert(kBlocksAtOnce % Lanes::kBlocks == 0);
 
   // A spring takes longer than the processor looks ahead, which would keep it waiting. So the
   // springs go through each part of the work in turn, so many vectors at a time: what a part needs

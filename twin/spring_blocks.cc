@@ -97,7 +97,7 @@ template <class Real>
 SpringBlocks<Real>::SpringBlocks(const SpringMassSystem& system)
     : spare_node(static_cast<int>(system.position.cols())) {
   std::vector<Block> made = MakeBlocks(system);
-  while (made.size() % 2 != 0) made.push_back({spare_node, {-1, -1, -1, -1}});
+  while (made.size() % kBlocksAtOnce != 0) made.push_back({spare_node, {-1, -1, -1, -1}});
   for (const Block& block : made) {
     a.push_back(block.a);
     for (int e : block.spring) {

@@ -56,9 +56,9 @@ TEST(SpringBlocks, HoldEverySpringOnce) {
   for (int nodes = 2; nodes < 12; ++nodes) ExpectEverySpringOnce(RandomSystem(nodes, 2, nodes));
 }
 
-TEST(SpringBlocks, AreEvenInNumber) {
+TEST(SpringBlocks, FillTheWidestVector) {
   for (int nodes = 2; nodes < 12; ++nodes) {
-    EXPECT_EQ(SpringBlocks<float>(RandomSystem(nodes, 2, nodes)).blocks() % 2, 0);
+    EXPECT_EQ(SpringBlocks<float>(RandomSystem(nodes, 2, nodes)).blocks() % kBlocksAtOnce, 0);
   }
 }
 
