@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trainer/solvers/parallel.h"
+#include "trainer/solvers/levenberg_marquardt.h"
 
 namespace physpring {
 namespace {
@@ -62,14 +62,8 @@ std::vector<ValueCertainty> CertaintyOf(const Fitting& fitting, const Descent& f
   const auto r = problem.Residuals(fit.x);
   if (!r || r->size() == 0) return {};
   const auto size = static_cast<int>(fit.x.size());
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(r->size(), size);
-  ParallelFor(size, fitting.threads(), [&](int i) {
-    Eigen::VectorXd moved = fit.x;
-    moved[i] += fitting.difference();
-    if (const auto at = problem.Residuals(moved)) {
-      jacobian.col(i) = (*at - *r) / fitting.difference();
-    }
-  });
+  const Eigen::MatrixXd jacobian = DifferenceColumns(
+      ResidualsOf(problem), fit.x, *r, {0, size, fitting.difference(), fitting.threads()});
   const int count = problem.model().effect_size(), own = size - count;
   const Eigen::VectorXd values = LastValuesOf(problem.model().Apply(fit.x), count);
   std::vector<ValueCertainty> certainty = CertaintyFrom(jacobian, *r, own);

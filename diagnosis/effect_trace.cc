@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "trainer/solvers/levenberg_marquardt.h"
 #include "trainer/solvers/parallel.h"
 
 namespace physpring {
@@ -35,7 +36,9 @@ class Tracer {
     const auto r = own.Residuals(fit_.x);
     if (!r || r->size() == 0) return false;
     r_ = *r;
-    j0_ = Columns(&own, fit_.x, r_, 0, static_cast<int>(fit_.x.size()), fitting_.threads());
+    j0_ = DifferenceColumns(
+        ResidualsOf(own), fit_.x, r_,
+        {0, static_cast<int>(fit_.x.size()), fitting_.difference(), fitting_.threads()});
     const Eigen::Index size = j0_.cols();
     normal0_.compute(j0_.transpose() * j0_ +
                      1e-9 * j0_.squaredNorm() * Eigen::MatrixXd::Identity(size, size));
@@ -65,7 +68,8 @@ class Tracer {
     if (!at) return kNone;
     const int own = static_cast<int>(fit_.x.size()), added = static_cast<int>(start.size());
     Eigen::MatrixXd j(r_.size(), own + added);
-    j << j0_, Columns(&problem, x, *at, own, added, 1);
+    j << j0_,
+        DifferenceColumns(ResidualsOf(problem), x, *at, {own, added, fitting_.difference(), 1});
     return 1 - BestStep(&problem, x, *at, j) / least_;
   }
 
@@ -81,20 +85,6 @@ class Tracer {
     return x;
   }
 
-  // d r / d x_i by forward differences.
-  Eigen::MatrixXd Columns(EffectProblem* problem, const Eigen::VectorXd& x,
-                          const Eigen::VectorXd& r, int first, int count, int threads) const {
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(r.size(), count);
-    ParallelFor(count, threads, [&](int i) {
-      Eigen::VectorXd moved = x;
-      moved[first + i] += fitting_.difference();
-      if (const auto at = problem->Residuals(moved)) {
-        jacobian.col(i) = (*at - r) / fitting_.difference();
-      }
-    });
-    return jacobian;
-  }
-
   // The least squared misfit after a damped step of Gauss-Newton.
   double BestStep(EffectProblem* problem, const Eigen::VectorXd& x, const Eigen::VectorXd& at,
                   const Eigen::MatrixXd& j) const {
@@ -102,13 +92,16 @@ class Tracer {
     Eigen::MatrixXd normal = j.transpose() * j / variance;
     normal.diagonal().array() += kDiagnosisPrecision;
     const Eigen::VectorXd gradient = j.transpose() * at / variance + kDiagnosisPrecision * x;
-    double least = at.squaredNorm();
+    std::vector<Eigen::VectorXd> tried;
     for (double damping : {1e-3, 3e-2, 1.0, 30.0}) {
       Eigen::MatrixXd damped = normal;
       damped.diagonal() += damping * normal.diagonal();
       Eigen::VectorXd step = -damped.ldlt().solve(gradient);
       step *= std::min(1.0, kLongestStep / std::max(1e-300, step.cwiseAbs().maxCoeff()));
-      const auto there = problem->Residuals(x + step);
+      tried.push_back(x + step);
+    }
+    double least = at.squaredNorm();
+    for (const auto& there : problem->Residuals(tried)) {
       if (there) least = std::min(least, there->squaredNorm());
     }
     return least;

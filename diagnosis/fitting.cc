@@ -158,8 +158,7 @@ bool Fitting::DescendOne(double gain, int steps, int threads, Descent* descent) 
     PieceKey key = KeyOf("Levenberg-Marquardt", descent->hypothesis);
     const Eigen::VectorXd after = journal().Get(key.Add(gain).Add(state.x).Add(state.damping), [&] {
       if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
-      return Pack(LevenbergMarquardtStep(
-          [&](const Eigen::VectorXd& at) { return problem.Residuals(at); }, state, options));
+      return Pack(LevenbergMarquardtStep(ResidualsOf(problem), state, options));
     });
     if (after.size() == 0) return false;
     Unpack(after, &state);

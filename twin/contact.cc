@@ -216,11 +216,21 @@ bool Contact<Real>::Hits(int node, Real gap, Real approach, Real h) const {
 }
 
 template <class Real>
+typename Contact<Real>::Vector Contact<Real>::After(const Touch& touch) const {
+  const Vector u = touch.velocity_before - touch.surface_velocity;
+  return touch.surface_velocity + Impact<Real>(u, touch.normal, laws_.surface);
+}
+
+template <class Real>
+typename Contact<Real>::Vector Contact<Real>::AfterGround(const Vector& v) const {
+  return After({0, -1, ground_normal_, Vector::Zero(), v});
+}
+
+template <class Real>
 void Contact<Real>::ApplyTouch(Touch touch, NodeStates<Real>* next, Impacts* impacts) const {
   NodeState<Real>* node = &(*next)[touch.node];
   touch.velocity_before = V(*node);
-  const Vector u = touch.velocity_before - touch.surface_velocity;
-  SetV<Real>(touch.surface_velocity + Impact<Real>(u, touch.normal, laws_.surface), node);
+  SetV(After(touch), node);
   impacts->touches.push_back(touch);
 }
 

@@ -71,6 +71,15 @@ class Contact {
   void Apply(const NodeStates<Real>& state, const Pairs& pairs, const std::vector<Geom>& geoms,
              double elapsed, double h, NodeStates<Real>* next, Impacts* impacts) const;
 
+  // The parts of this, for rollouts whose ground is looked at side by side: the plane (offset:
+  // normal . x on it, m), how near it the nodes touch it, and the velocity v of one that touches it
+  // as it is thereafter.
+  bool has_ground() const { return has_ground_; }
+  const Vector& ground_normal() const { return ground_normal_; }
+  Real ground_offset() const { return ground_offset_; }
+  const std::vector<Real>& radius() const { return radius_; }  // m
+  Vector AfterGround(const Vector& v) const;
+
   // Makes the velocities of `next` those before the contacts again.
   void Undo(const Impacts& impacts, NodeStates<Real>* next) const;
 
@@ -116,6 +125,7 @@ class Contact {
   static Vector GeomTouchAdjoint(const PlacedGeom& geom, const Vector& x, const Vector& normal_bar,
                                  const Vector& surface_velocity_bar);
   bool Hits(int node, Real gap, Real approach, Real h) const;
+  Vector After(const Touch& touch) const;
   void ApplyTouch(Touch touch, NodeStates<Real>* next, Impacts* impacts) const;
   void ApplyGround(const NodeStates<Real>& state, Real h, NodeStates<Real>* next,
                    Impacts* impacts) const;

@@ -108,12 +108,13 @@ class LevelStep {
   void AddGradients(const NodeView<Real>& nodes, double h, const LevelBuffers<Real>& buffers,
                     SystemGradient* gradient) const;
 
- private:
+  // What its effects see of a sub-step.
   EffectSubstep<Real> EffectsOf(const LevelSubstep<Real>& now, const State& state) const {
     return {*kernel_, springs_.View(), now.start + now.elapsed,
             now.h,    state,           now.controller_velocity};
   }
 
+ private:
   const Kernel<Real>* kernel_;
   SpringBlocks<Real> springs_;
   Contact<Real> contact_;

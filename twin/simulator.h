@@ -18,6 +18,9 @@
 
 namespace physpring {
 
+template <class Real>
+class LaneSimulator;
+
 struct SimulationOptions {
   double frame_time = 1.0 / 30;     // s
   int substeps = 667;               // a frame
@@ -71,6 +74,8 @@ class Simulator {
   int node_count() const { return nodes_; }
 
  private:
+  friend class LaneSimulator<Real>;
+
   LevelSubstep<Real> NowOf(const FrameInput& input, int substep, const Workspace& workspace) const;
   void StartFrame(const FrameInput& input, const State& state, Workspace* workspace) const;
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
@@ -93,6 +98,7 @@ class Simulator<Real>::Workspace {
 
  private:
   friend class Simulator;
+  friend class LaneSimulator<Real>;
 
   State next;
   std::vector<State> states;  // at the start of each sub-step of a frame, and at its end

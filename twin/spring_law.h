@@ -40,8 +40,13 @@ struct SpringLaw {
 
   // From d . d and d . u.
   void Evaluate(V d_d, V d_u) {
-    length = Lanes::Sqrt(d_d);
-    inverse = Lanes::Inverse(length);
+    const V l = Lanes::Sqrt(d_d);
+    Evaluate(l, Lanes::Inverse(l), d_u);
+  }
+  // The same from l, 1 / l (or 0) and d . u.
+  void Evaluate(V l, V inverse_of_l, V d_u) {
+    length = l;
+    inverse = inverse_of_l;
     rate = d_u * inverse;
     stretch = length - L;
     scale = (k * stretch + c * rate + T) * inverse;

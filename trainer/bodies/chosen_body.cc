@@ -56,10 +56,12 @@ LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<E
   if (!model.body.kind->has_single_springs()) {
     if (const auto r = problem.Residuals(state.x)) limit = kRobust * MedianSize(*r);
   }
-  const auto residuals = [&](const Eigen::VectorXd& x) {
-    auto r = problem.Residuals(x);
-    if (r && std::isfinite(limit)) r = Robust(*r, limit);
-    return r;
+  const auto residuals = [&](const std::vector<Eigen::VectorXd>& xs) {
+    auto all = problem.Residuals(xs);
+    for (auto& r : all) {
+      if (r && std::isfinite(limit)) r = Robust(*r, limit);
+    }
+    return all;
   };
   return LevenbergMarquardtStep(residuals, state, levenberg);
 }

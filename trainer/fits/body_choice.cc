@@ -141,9 +141,12 @@ void RoundOfChoice::SearchStart(ChosenBody* model) const {
       MotionProblem::Options follow = FollowOptions(first_, body, options_);
       follow.rollout.observer_gain = kObserverGains[0];
       MotionProblem problem(factors, held_back_.FitEpisodes(), follow);
-      for (const Eigen::VectorXd& x : Starts(factors, *body.kind)) {
+      const std::vector<Eigen::VectorXd> starts = Starts(factors, *body.kind);
+      const auto residuals = problem.Residuals(starts);
+      for (std::size_t i = 0; i < starts.size(); ++i) {
+        const Eigen::VectorXd& x = starts[i];
+        const auto& r = residuals[i];
         if (model->start_substeps == 0) *model = {body, substeps, x, x};
-        const auto r = problem.Residuals(x);
         if (!r || r->squaredNorm() >= least) continue;
         least = r->squaredNorm();
         *model = {body, substeps, x, x};

@@ -52,8 +52,7 @@ StepReport StepCommon(const LevelModel& model, int threads, int last_gain, Commo
   options.threads = threads;
   options.difference = FactorDifference(model.first());
   LevenbergMarquardtState state{fit->common, fit->damping, fit->mean_square, false};
-  state = LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
-                                 state, options);
+  state = LevenbergMarquardtStep(ResidualsOf(problem), state, options);
   fit->common = state.x;
   fit->damping = state.damping;
   fit->mean_square = state.mean_square > 0 ? state.mean_square : kInfinity;

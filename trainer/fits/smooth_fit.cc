@@ -87,9 +87,7 @@ StepReport SmoothFit::Step(SmoothState* state) const {
     levenberg.tolerance = state->gain == kLastGain ? kFreeTolerance : kFollowedTolerance;
     levenberg.updates = kUpdates;
     levenberg.threads = options_.threads;
-    fit = LevenbergMarquardtStep([&](const Eigen::VectorXd& x) { return problem.Residuals(x); },
-                                 fit, levenberg,
-                                 [&](const Eigen::VectorXd& x) { return nearby.Residuals(x); });
+    fit = LevenbergMarquardtStep(ResidualsOf(problem), fit, levenberg, ResidualsOf(nearby));
   }
   state->x = fit.x;
   state->damping = fit.damping;

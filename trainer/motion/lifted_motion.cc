@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "trainer/motion/lane_rollout.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/hierarchy.h"
 
@@ -79,22 +80,45 @@ bool LiftedMotion::AreEnough(const Substeps& substeps, const SpringMassSystem& s
   return true;
 }
 
-std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMassSystem& system,
-                                                         const Substeps& substeps) const {
-  const Episode& episode = episodes_[e];
-  Motion motion;
-  if (episode.frames < 2) return motion;
+RolloutOptions LiftedMotion::RolloutOf(int e, const Substeps& substeps) const {
   RolloutOptions options = options_.rollout;
   options.substeps = substeps[e];
+  return options;
+}
+
+Episode LiftedMotion::EpisodeOfNodes(int e) const {
+  const Episode& episode = episodes_[e];
   const Recording* recording = carried_.empty() ? episode.recording : &carried_[e];
-  motion.rollout = RollOut(system, {recording, episode.frames, episode.use}, options);
+  return {recording, episode.frames, episode.use};
+}
+
+std::vector<Points> LiftedMotion::Lifted(int e, const std::vector<Points>& positions) const {
+  std::vector<Points> lifted(positions.size());
+  ParallelFor(static_cast<int>(lifted.size()), ThreadsOfOne(),
+              [&](int frame) { lifted[frame] = lifts_[e].Apply(positions[frame]); });
+  return lifted;
+}
+
+std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMassSystem& system,
+                                                         const Substeps& substeps) const {
+  Motion motion;
+  if (episodes_[e].frames < 2) return motion;
+  motion.rollout = RollOut(system, EpisodeOfNodes(e), RolloutOf(e, substeps));
   if (motion.rollout->diverged()) return {};
-  if (lifts_.empty()) return motion;
-  motion.lifted.resize(episode.frames);
-  ParallelFor(episode.frames, ThreadsOfOne(), [&](int frame) {
-    motion.lifted[frame] = lifts_[e].Apply(motion.rollout->positions()[frame]);
-  });
+  if (!lifts_.empty()) motion.lifted = Lifted(e, motion.rollout->positions());
   return motion;
+}
+
+std::vector<std::optional<std::vector<Points>>> LiftedMotion::RunSideBySide(
+    int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const {
+  using Particles = std::vector<Points>;
+  if (episodes_[e].frames < 2) return {systems.size(), Particles()};
+  auto all = RollOutSideBySide(systems, EpisodeOfNodes(e), RolloutOf(e, substeps));
+  if (lifts_.empty()) return all;
+  for (std::optional<Particles>& particles : all) {
+    if (particles) particles = Lifted(e, *particles);
+  }
+  return all;
 }
 
 std::optional<std::vector<LiftedMotion::Motion>> LiftedMotion::Run(const SpringMassSystem& system,

@@ -61,6 +61,10 @@ class LiftedMotion {
   // The motion of episode `e`; nothing where the rollout diverges.
   std::optional<Motion> RunOne(int e, const SpringMassSystem& system,
                                const Substeps& substeps) const;
+  // The particles of episode `e` in each frame, for each of the systems; nothing where the rollout
+  // diverges. The same as from one after the other (lane_rollout.h).
+  std::vector<std::optional<std::vector<Points>>> RunSideBySide(
+      int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const;
   // The motions of all episodes; nothing where a rollout diverges or there are no `substeps`.
   std::optional<std::vector<Motion>> Run(const SpringMassSystem& system,
                                          const Substeps& substeps) const;
@@ -75,6 +79,10 @@ class LiftedMotion {
   static std::vector<Points> ZerosLike(std::vector<Points> frames);
 
  private:
+  RolloutOptions RolloutOf(int e, const Substeps& substeps) const;
+  Episode EpisodeOfNodes(int e) const;
+  std::vector<Points> Lifted(int e, const std::vector<Points>& positions) const;
+
   // Where there is one episode only, its parts run in parallel.
   int ThreadsOfOne() const { return episodes_.size() == 1 ? options_.threads : 1; }
 

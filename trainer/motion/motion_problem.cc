@@ -2,6 +2,7 @@
 #include "trainer/motion/motion_problem.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "trainer/solvers/parallel.h"
@@ -29,6 +30,16 @@ void MotionProblem::CountResiduals() {
   }
 }
 
+void MotionProblem::SetResiduals(int e, const std::vector<Points>& particles,
+                                 Eigen::VectorXd* residuals) const {
+  const std::vector<Points>& measured = motion_.episode(e).recording->points;
+  std::size_t row = offset_[e];
+  ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int frame, int point) {
+    residuals->segment<3>(row) = particles[frame].col(point) - measured[frame].col(point);
+    row += 3;
+  });
+}
+
 bool MotionProblem::FixSubsteps(const Eigen::VectorXd& x) {
   substeps_ = motion_.SubstepsOf(SystemAt(x));
   return !substeps_.empty();
@@ -46,24 +57,59 @@ std::optional<Eigen::VectorXd> MotionProblem::RollOutAll(
     auto motion = motion_.RunOne(e, system, substeps);
     diverged[e] = motion ? 0 : 1;
     if (!motion) return;
-    const std::vector<Points>& particles = motion->particles();
-    const std::vector<Points>& measured = motion_.episode(e).recording->points;
-    std::size_t row = offset_[e];
-    ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int frame, int point) {
-      residuals.segment<3>(row) = particles[frame].col(point) - measured[frame].col(point);
-      row += 3;
-    });
+    SetResiduals(e, motion->particles(), &residuals);
     if (motions) (*motions)[e] = std::move(*motion);
   });
   if (std::any_of(diverged.begin(), diverged.end(), [](char d) { return d != 0; })) return {};
   return residuals;
 }
 
+LiftedMotion::Substeps MotionProblem::SubstepsFor(const SpringMassSystem& system) const {
+  if (!keep_substeps_) return motion_.SubstepsOf(system);
+  return motion_.AreEnough(substeps_, system) ? substeps_ : LiftedMotion::Substeps();
+}
+
+std::vector<std::optional<Eigen::VectorXd>> MotionProblem::RollOutSideBySide(
+    const std::vector<SpringMassSystem>& systems, const LiftedMotion::Substeps& substeps) const {
+  std::vector<std::vector<std::optional<std::vector<Points>>>> particles(offset_.size() - 1);
+  ParallelFor(motion_.episode_count(), motion_.threads(),
+              [&](int e) { particles[e] = motion_.RunSideBySide(e, systems, substeps); });
+  std::vector<std::optional<Eigen::VectorXd>> all(systems.size());
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    if (!std::all_of(particles.begin(), particles.end(), [&](auto& of) { return of[i]; })) continue;
+    all[i] = Eigen::VectorXd(offset_.back());
+    for (int e = 0; e < motion_.episode_count(); ++e) SetResiduals(e, *particles[e][i], &*all[i]);
+  }
+  return all;
+}
+
+std::vector<std::optional<Eigen::VectorXd>> MotionProblem::Residuals(
+    const std::vector<Eigen::VectorXd>& xs) const {
+  // side by side go those that take equal sub-steps
+  struct Group {
+    std::vector<SpringMassSystem> systems;
+    std::vector<std::size_t> places;
+  };
+  std::map<LiftedMotion::Substeps, Group> groups;
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    SpringMassSystem system = SystemAt(xs[i]);
+    Group& group = groups[SubstepsFor(system)];
+    group.systems.push_back(std::move(system));
+    group.places.push_back(i);
+  }
+  std::vector<std::optional<Eigen::VectorXd>> all(xs.size());
+  for (const auto& [substeps, group] : groups) {
+    if (substeps.empty()) continue;
+    auto residuals = RollOutSideBySide(group.systems, substeps);
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      all[group.places[i]] = std::move(residuals[i]);
+    }
+  }
+  return all;
+}
+
 std::optional<Eigen::VectorXd> MotionProblem::Residuals(const Eigen::VectorXd& x) {
-  const SpringMassSystem system = SystemAt(x);
-  if (!keep_substeps_) return RollOutAll(system, motion_.SubstepsOf(system), nullptr);
-  if (!motion_.AreEnough(substeps_, system)) return {};
-  return RollOutAll(system, substeps_, nullptr);
+  return Residuals(std::vector<Eigen::VectorXd>{x})[0];
 }
 
 std::optional<Eigen::VectorXd> MotionProblem::Linearise(const Eigen::VectorXd& x) {

@@ -42,7 +42,10 @@ class MotionProblem : public LeastSquares {
   // Keeps the sub-steps that x needs; false if that is too many.
   bool FixSubsteps(const Eigen::VectorXd& x);
 
-  // Both give nothing where a motion diverges or would need too many sub-steps.
+  // Each gives nothing where a motion diverges or would need too many sub-steps. Residuals at
+  // several x at once are the same numbers in less time. They may be asked for by several threads.
+  std::vector<std::optional<Eigen::VectorXd>> Residuals(
+      const std::vector<Eigen::VectorXd>& xs) const;
   std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) override;
   std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) override;
   Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) override;
@@ -53,6 +56,12 @@ class MotionProblem : public LeastSquares {
 
  private:
   void CountResiduals();
+  // With which the residuals of a system are taken; empty where they do not exist.
+  LiftedMotion::Substeps SubstepsFor(const SpringMassSystem& system) const;
+  // The residuals of one episode, from its particles in each frame.
+  void SetResiduals(int e, const std::vector<Points>& particles, Eigen::VectorXd* residuals) const;
+  std::vector<std::optional<Eigen::VectorXd>> RollOutSideBySide(
+      const std::vector<SpringMassSystem>& systems, const LiftedMotion::Substeps& substeps) const;
   std::optional<Eigen::VectorXd> RollOutAll(const SpringMassSystem& system,
                                             const LiftedMotion::Substeps& substeps,
                                             std::vector<LiftedMotion::Motion>* motions) const;
@@ -70,6 +79,11 @@ class MotionProblem : public LeastSquares {
   std::vector<LiftedMotion::Motion> motions_;
   int cuts_ = 0;
 };
+
+// The residuals of a problem, which must outlive this, for Levenberg-Marquardt.
+inline auto ResidualsOf(const MotionProblem& problem) {
+  return [&problem](const std::vector<Eigen::VectorXd>& xs) { return problem.Residuals(xs); };
+}
 
 }  // namespace physpring
 

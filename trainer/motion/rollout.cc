@@ -37,7 +37,7 @@ class RolloutIn : public Rollout {
       NodeStates<Real> state = states_.back();
       simulator_.AdvanceFrame(Input(frame), &state, &workspaces_[0]);
       Points position = simulator_.Positions(state);
-      if (!position.allFinite() || position.cwiseAbs().maxCoeff() > kFarAway) {
+      if (IsFarAway(position)) {
         diverged_ = true;
         break;
       }

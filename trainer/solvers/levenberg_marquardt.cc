@@ -20,15 +20,12 @@ struct Linearisation {
   Eigen::MatrixXd jacobian;
 };
 
-Linearisation Linearise(const ResidualFunction& residuals, const Eigen::VectorXd& x,
+Linearisation Linearise(const ResidualsFunction& residuals, const Eigen::VectorXd& x,
                         const LevenbergMarquardtOptions& options) {
   const int count = static_cast<int>(x.size());
-  std::vector<std::optional<Eigen::VectorXd>> at(static_cast<std::size_t>(count) + 1);
-  ParallelFor(count + 1, options.threads, [&](int i) {
-    Eigen::VectorXd moved = x;
-    if (i > 0) moved[i - 1] += options.difference;
-    at[i] = residuals(moved);
-  });
+  std::vector<Eigen::VectorXd> moved(static_cast<std::size_t>(count) + 1, x);
+  for (int i = 0; i < count; ++i) moved[i + 1][i] += options.difference;
+  auto at = EvaluateAll(residuals, moved, options.threads);
   Linearisation result = {std::move(at[0]), {}};
   if (!result.r) return result;
   result.jacobian = Eigen::MatrixXd::Zero(result.r->size(), count);
@@ -48,7 +45,7 @@ struct Trial {
 // What a step minimises: |r|^2 / variance + prior.
 class Objective {
  public:
-  Objective(const ResidualFunction& residuals, const LevenbergMarquardtOptions& options,
+  Objective(const ResidualsFunction& residuals, const LevenbergMarquardtOptions& options,
             double variance, Eigen::Index size)
       : residuals_(residuals),
         options_(options),
@@ -80,26 +77,28 @@ class Objective {
                                const Eigen::VectorXd& gradient, double damping,
                                double least) const {
     constexpr std::array<double, 2> kFactors = {1, 0.1};
-    std::array<Eigen::VectorXd, 2> tried;
-    std::array<std::optional<Eigen::VectorXd>, 2> r;
-    ParallelFor(2, options_.threads, [&](int t) {
+    std::vector<Eigen::VectorXd> tried;
+    std::vector<double> next_damping;
+    for (double factor : kFactors) {
       Eigen::MatrixXd damped = normal;
-      damped.diagonal() += damping * kFactors[t] * normal.diagonal();
+      damped.diagonal() += damping * factor * normal.diagonal();
       Eigen::VectorXd step = -damped.ldlt().solve(gradient);
       step *= std::min(1.0, options_.longest_step / std::max(1e-300, step.cwiseAbs().maxCoeff()));
-      tried[t] = x + step;
-      if (tried[t].allFinite()) r[t] = residuals_(tried[t]);
-    });
+      if (!step.allFinite()) continue;
+      tried.push_back(x + step);
+      next_damping.push_back(std::clamp(damping * (factor == 1 ? 0.5 : 0.1), 1e-6, 1e6));
+    }
+    const auto r = EvaluateAll(residuals_, tried, options_.threads);
     std::optional<Trial> better;
-    for (int t = 0; t < 2; ++t) {
+    for (std::size_t t = 0; t < tried.size(); ++t) {
       if (!r[t] || At(*r[t], tried[t]) >= least) continue;
       least = At(*r[t], tried[t]);
-      better = {tried[t], *r[t], least, std::clamp(damping * (t == 0 ? 0.5 : 0.1), 1e-6, 1e6)};
+      better = {tried[t], *r[t], least, next_damping[t]};
     }
     return better;
   }
 
-  const ResidualFunction& residuals_;
+  const ResidualsFunction& residuals_;
   const LevenbergMarquardtOptions& options_;
   double variance_;
   Eigen::VectorXd precision_;
@@ -107,10 +106,36 @@ class Objective {
 
 }  // namespace
 
-LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals,
+std::vector<std::optional<Eigen::VectorXd>> EvaluateAll(const ResidualsFunction& residuals,
+                                                        const std::vector<Eigen::VectorXd>& xs,
+                                                        int threads) {
+  const int count = static_cast<int>(xs.size()), shares = std::min(std::max(threads, 1), count);
+  std::vector<std::optional<Eigen::VectorXd>> all(xs.size());
+  ParallelFor(shares, threads, [&](int share) {
+    const int first = share * count / shares, end = (share + 1) * count / shares;
+    auto part = residuals({xs.begin() + first, xs.begin() + end});
+    std::move(part.begin(), part.end(), all.begin() + first);
+  });
+  return all;
+}
+
+Eigen::MatrixXd DifferenceColumns(const ResidualsFunction& residuals, const Eigen::VectorXd& x,
+                                  const Eigen::VectorXd& r, const Differences& differences) {
+  const auto& [first, count, difference, threads] = differences;
+  std::vector<Eigen::VectorXd> moved(static_cast<std::size_t>(count), x);
+  for (int i = 0; i < count; ++i) moved[i][first + i] += difference;
+  const auto at = EvaluateAll(residuals, moved, threads);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(r.size(), count);
+  for (int i = 0; i < count; ++i) {
+    if (at[i]) columns.col(i) = (*at[i] - r) / difference;
+  }
+  return columns;
+}
+
+LevenbergMarquardtState LevenbergMarquardtStep(const ResidualsFunction& residuals,
                                                const LevenbergMarquardtState& state,
                                                const LevenbergMarquardtOptions& options,
-                                               const ResidualFunction& nearby) {
+                                               const ResidualsFunction& nearby) {
   constexpr int kAttempts = 4;
   constexpr double kGoesOn = 0.1;  // an update is worth it that gains this share of the first step
   LevenbergMarquardtState next = state;

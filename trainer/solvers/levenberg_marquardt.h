@@ -8,12 +8,32 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace physpring {
 
-// Residuals at x (always the same number); nothing where the model cannot be evaluated. Called from
-// several threads at once.
-using ResidualFunction = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& x)>;
+// Residuals at each of several x (always the same number); nothing where the model cannot be
+// evaluated. Called from several threads at once, each with a part of what is asked for: what is
+// given for an x must not depend on the others.
+using ResidualsFunction = std::function<std::vector<std::optional<Eigen::VectorXd>>(
+    const std::vector<Eigen::VectorXd>& xs)>;
+
+// The residuals at each of xs. Each of the threads asks for its share at once.
+std::vector<std::optional<Eigen::VectorXd>> EvaluateAll(const ResidualsFunction& residuals,
+                                                        const std::vector<Eigen::VectorXd>& xs,
+                                                        int threads);
+
+// Which derivatives to take by forward differences, and how.
+struct Differences {
+  int first, count;   // entries of x
+  double difference;  // step
+  int threads;
+};
+
+// Columns d r / d x_i for these entries, r being the residuals at x; 0 where a step cannot be
+// evaluated.
+Eigen::MatrixXd DifferenceColumns(const ResidualsFunction& residuals, const Eigen::VectorXd& x,
+                                  const Eigen::VectorXd& r, const Differences& differences);
 
 // The prior's precision, 1 / (standard deviation of an entry)^2.
 inline constexpr double kLevenbergMarquardtPrecision = 0.25;
@@ -43,10 +63,10 @@ struct LevenbergMarquardtState {
 // `nearby` (empty: `residuals`) gives the residuals that are differentiated. At state.x it must
 // agree with `residuals`; elsewhere it may do what makes them smoother, as keep the number of
 // sub-steps.
-LevenbergMarquardtState LevenbergMarquardtStep(const ResidualFunction& residuals,
+LevenbergMarquardtState LevenbergMarquardtStep(const ResidualsFunction& residuals,
                                                const LevenbergMarquardtState& state,
                                                const LevenbergMarquardtOptions& options,
-                                               const ResidualFunction& nearby = {});
+                                               const ResidualsFunction& nearby = {});
 
 }  // namespace physpring
 

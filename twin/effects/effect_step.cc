@@ -36,20 +36,21 @@ template <class Real>
 void EffectStep<Real>::AddForces(const EffectSubstep<Real>& now, State* next,
                                  NodeForces<Real>* force, EffectBuffers<Real>* buffers) const {
   tensions_.AddForces(now, next, force, &buffers->tension);
-  if (effects_.has_forces()) AddNodeForces(now, next, force, buffers);
-}
-
-template <class Real>
-void EffectStep<Real>::AddNodeForces(const EffectSubstep<Real>& now, State* next,
-                                     NodeForces<Real>* force, EffectBuffers<Real>* buffers) const {
-  Unpack(now.state, buffers);
-  buffers->force.setZero(3, columns_);
-  effects_.AddForces({now.time, now.step, buffers->x, buffers->v}, &buffers->internal,
-                     &buffers->force);
+  if (!has_node_forces()) return;
+  ComputeNodeForces(now, next, buffers);
   const double* added = buffers->force.data();
   for (int i = 0; i < nodes_; ++i) {
     for (int j = 0; j < 3; ++j) (*force)[i].f[j] += static_cast<Real>(added[3 * i + j]);
   }
+}
+
+template <class Real>
+void EffectStep<Real>::ComputeNodeForces(const EffectSubstep<Real>& now, State* next,
+                                         EffectBuffers<Real>* buffers) const {
+  Unpack(now.state, buffers);
+  buffers->force.setZero(3, columns_);
+  effects_.AddForces({now.time, now.step, buffers->x, buffers->v}, &buffers->internal,
+                     &buffers->force);
   PackInternal(buffers->internal, next);
 }
 

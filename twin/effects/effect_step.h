@@ -41,6 +41,13 @@ class EffectStep {
            (effects_.internal_size() + kRecordSize - 1) / kRecordSize;
   }
 
+  const TensionStep<Real>& tensions() const { return tensions_; }
+  bool has_node_forces() const { return effects_.has_forces(); }
+  // Sets buffers->force to the forces on nodes, 3 x columns, N. Gives `next` their internal
+  // variables.
+  void ComputeNodeForces(const EffectSubstep<Real>& now, State* next,
+                         EffectBuffers<Real>* buffers) const;
+
   // Adds the forces of springs and effects at `now`, and gives `next` its internal variables.
   void AddForces(const EffectSubstep<Real>& now, State* next, NodeForces<Real>* force,
                  EffectBuffers<Real>* buffers) const;
@@ -62,8 +69,6 @@ class EffectStep {
                       const EffectBuffers<Real>& buffers, SystemGradient* gradient) const;
 
  private:
-  void AddNodeForces(const EffectSubstep<Real>& now, State* next, NodeForces<Real>* force,
-                     EffectBuffers<Real>* buffers) const;
   void AddNodeForcesAdjoint(const EffectSubstep<Real>& now, const NodeForces<Real>& force_bar,
                             State* state_bar, EffectBuffers<Real>* buffers) const;
   void Unpack(const State& state, EffectBuffers<Real>* buffers) const;

@@ -84,20 +84,21 @@ void TensionStep<Real>::MeasurePullAdjoint(const EffectSubstep<Real>& now, State
   });
 }
 
-// Lengths, rates and pulls, with a force_bar tension_bar, too; no tension yet.
 template <class Real>
-SpringMoments<Real> TensionStep<Real>::Measure(const EffectSubstep<Real>& now,
-                                               const NodeForce<Real>* force_bar,
-                                               TensionBuffers<Real>* buffers) const {
+SpringMeasures<Real> TensionStep<Real>::Measures(TensionBuffers<Real>* buffers) const {
   buffers->length.resize(springs_);
   buffers->rate.resize(springs_);
   buffers->tension_bar.resize(springs_);
+  return {buffers->length.data(), buffers->rate.data(), buffers->tension_bar.data()};
+}
+
+// What was measured, and pulls; no tension yet.
+template <class Real>
+SpringMoments<Real> TensionStep<Real>::Moments(const EffectSubstep<Real>& now,
+                                               TensionBuffers<Real>* buffers) const {
   buffers->tension.assign(springs_, 0);
   buffers->pull.resize(springs_);
   if (feels_pull_) MeasurePull(now, buffers);
-  now.kernel.measure_springs(
-      now.springs, now.state.data(), force_bar,
-      {buffers->length.data(), buffers->rate.data(), buffers->tension_bar.data()});
   return {springs_,
           buffers->length.data(),
           buffers->rate.data(),
@@ -109,16 +110,23 @@ SpringMoments<Real> TensionStep<Real>::Measure(const EffectSubstep<Real>& now,
 }
 
 template <class Real>
+const Real* TensionStep<Real>::AddTensions(const EffectSubstep<Real>& now, State* next,
+                                           TensionBuffers<Real>* buffers) const {
+  const SpringMoments<Real> moments = Moments(now, buffers);
+  for (const Tension& tension : tensions_) {
+    tension.law->Add(moments, Internal(now.state, tension.record), Internal(next, tension.record),
+                     buffers->tension.data());
+  }
+  return buffers->tension.data();
+}
+
+template <class Real>
 void TensionStep<Real>::AddForces(const EffectSubstep<Real>& now, State* next,
                                   NodeForces<Real>* force, TensionBuffers<Real>* buffers) const {
   SpringView<Real> springs = now.springs;
-  if (!tensions_.empty()) {
-    const SpringMoments<Real> moments = Measure(now, nullptr, buffers);
-    for (const Tension& tension : tensions_) {
-      tension.law->Add(moments, Internal(now.state, tension.record), Internal(next, tension.record),
-                       buffers->tension.data());
-    }
-    springs.tension = buffers->tension.data();
+  if (along()) {
+    now.kernel.measure_springs(springs, now.state.data(), nullptr, Measures(buffers));
+    springs.tension = AddTensions(now, next, buffers);
   }
   now.kernel.add_spring_forces(springs, now.state.data(), force->data());
 }
@@ -139,7 +147,8 @@ void TensionStep<Real>::AddForcesAdjoint(const EffectSubstep<Real>& now,
                                          TensionBuffers<Real>* buffers) const {
   SpringView<Real> springs = now.springs;
   if (!tensions_.empty()) {
-    const SpringMoments<Real> moments = Measure(now, force_bar.data(), buffers);
+    now.kernel.measure_springs(springs, now.state.data(), force_bar.data(), Measures(buffers));
+    const SpringMoments<Real> moments = Moments(now, buffers);
     buffers->length_bar.assign(springs_, 0);
     buffers->rate_bar.assign(springs_, 0);
     buffers->pull_bar.assign(springs_, 0);

@@ -60,6 +60,16 @@ class TensionStep {
   // The record of a state behind the internal variables.
   int end_record() const { return end_record_; }
 
+  // A sub-step in parts, for rollouts whose springs are measured side by side. Effects add no
+  // tension where there are none `along` springs; some need the places of nodes and controllers.
+  bool along() const { return !tensions_.empty(); }
+  bool needs_nodes() const { return feels_pull_; }
+  // Where length and rate of the springs are written to, before AddTensions is called.
+  SpringMeasures<Real> Measures(TensionBuffers<Real>* buffers) const;
+  // The tension of each spring. Gives `next` the internal variables.
+  const Real* AddTensions(const EffectSubstep<Real>& now, State* next,
+                          TensionBuffers<Real>* buffers) const;
+
   // Adds the forces of the springs at `now`, and gives `next` the internal variables.
   void AddForces(const EffectSubstep<Real>& now, State* next, NodeForces<Real>* force,
                  TensionBuffers<Real>* buffers) const;
@@ -81,8 +91,7 @@ class TensionStep {
     int record;  // where its internal variables begin
   };
 
-  SpringMoments<Real> Measure(const EffectSubstep<Real>& now, const NodeForce<Real>* force_bar,
-                              TensionBuffers<Real>* buffers) const;
+  SpringMoments<Real> Moments(const EffectSubstep<Real>& now, TensionBuffers<Real>* buffers) const;
 
   // Calls visit(spring, controller, node) for the springs that join a controller to a node.
   template <class Visit>

@@ -99,6 +99,25 @@ TEST(MotionProblem, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.JacobianTransposedTimes(r), two.JacobianTransposedTimes(r));
 }
 
+TEST(MotionProblem, GivesResidualsAtSeveralPointsAsAtEach) {
+  Case c;
+  std::vector<Eigen::VectorXd> xs;
+  for (std::uint64_t seed = 1; seed <= 9; ++seed) {
+    xs.push_back(Uniform(c.parameters.size(), 0.3, seed));  // some take more sub-steps
+  }
+  xs[3][0] = 12;
+  c.options.most_substeps = 100;
+  for (bool keep : {false, true}) {
+    c.options.keep_substeps = keep;
+    MotionProblem problem = c.Problem();
+    ASSERT_TRUE(problem.FixSubsteps(xs[0]));
+    const auto all = problem.Residuals(xs);
+    for (std::size_t i = 0; i < xs.size(); ++i) EXPECT_EQ(all[i], problem.Residuals(xs[i])) << i;
+    EXPECT_TRUE(all[0]);
+    EXPECT_FALSE(all[3]);
+  }
+}
+
 TEST(MotionProblem, CannotEvaluateASystemThatNeedsTooManySubsteps) {
   Case c;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(c.parameters.size());

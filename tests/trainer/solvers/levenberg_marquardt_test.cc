@@ -3,12 +3,35 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <mutex>
+#include <utility>
 
 namespace physpring {
 namespace {
 
 const LevenbergMarquardtOptions kNoPrior{.precision = 0};
+
+// Residuals at one x.
+using ResidualFunction = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& x)>;
+
+ResidualsFunction OneByOne(ResidualFunction residuals) {
+  if (!residuals) return {};
+  return [residuals = std::move(residuals)](const std::vector<Eigen::VectorXd>& xs) {
+    std::vector<std::optional<Eigen::VectorXd>> all;
+    for (const Eigen::VectorXd& x : xs) all.push_back(residuals(x));
+    return all;
+  };
+}
+
+LevenbergMarquardtState Step(const ResidualFunction& residuals,
+                             const LevenbergMarquardtState& state,
+                             const LevenbergMarquardtOptions& options,
+                             const ResidualFunction& nearby = {}) {
+  return LevenbergMarquardtStep(OneByOne(residuals), state, options, OneByOne(nearby));
+}
 
 // r_i = a exp(-b t_i) - 2 exp(-0.7 t_i): zero at (a, b) = (2, 0.7).
 std::optional<Eigen::VectorXd> Decay(const Eigen::VectorXd& x) {
@@ -20,7 +43,7 @@ std::optional<Eigen::VectorXd> Decay(const Eigen::VectorXd& x) {
 LevenbergMarquardtState LinearStep(const LevenbergMarquardtOptions& options) {
   LevenbergMarquardtState start{Eigen::Vector2d(0, 0)};
   start.damping = 1e-6;
-  return LevenbergMarquardtStep(
+  return Step(
       [](const Eigen::VectorXd& x) {
         return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(2, 2));
       },
@@ -30,7 +53,7 @@ LevenbergMarquardtState LinearStep(const LevenbergMarquardtOptions& options) {
 LevenbergMarquardtState Steps(const ResidualFunction& residuals, LevenbergMarquardtState state,
                               const LevenbergMarquardtOptions& options, int most) {
   for (int i = 0; i < most && !state.converged; ++i) {
-    state = LevenbergMarquardtStep(residuals, state, options);
+    state = Step(residuals, state, options);
   }
   return state;
 }
@@ -49,11 +72,29 @@ TEST(LevenbergMarquardt, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.x, Steps(Decay, {Eigen::Vector2d(0.5, 0)}, options, 4).x);
 }
 
+TEST(LevenbergMarquardt, AsksForDifferencesAtOnceAndForEachThreadsShare) {
+  std::mutex lock;
+  std::vector<std::size_t> asked;
+  const auto counted = [&](const std::vector<Eigen::VectorXd>& xs) {
+    const std::lock_guard guard(lock);
+    asked.push_back(xs.size());
+    return OneByOne(Decay)(xs);
+  };
+  LevenbergMarquardtOptions options;
+  LevenbergMarquardtStep(counted, {Eigen::Vector2d(0.5, 0)}, options);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{3, 2}));  // the differences, and two trials
+  asked.clear();
+  options.threads = 2;
+  LevenbergMarquardtStep(counted, {Eigen::Vector2d(0.5, 0)}, options);
+  std::sort(asked.begin(), asked.end());
+  EXPECT_EQ(asked, (std::vector<std::size_t>{1, 1, 1, 2}));
+}
+
 TEST(LevenbergMarquardt, NoEntryMovesFurtherThanTheLongestStep) {
   const auto far = [](const Eigen::VectorXd& x) {
     return std::optional<Eigen::VectorXd>(x - Eigen::Vector2d(10, 0));
   };
-  const auto state = LevenbergMarquardtStep(far, {Eigen::Vector2d(0, 0)}, kNoPrior);
+  const auto state = Step(far, {Eigen::Vector2d(0, 0)}, kNoPrior);
   EXPECT_NEAR(state.x[0], 1, 1e-9);
 }
 
@@ -81,11 +122,11 @@ TEST(LevenbergMarquardt, GoesOnWithAnUpdatedJacobianForTwoEvaluationsEach) {
     ++calls;
     return Decay(x);
   };
-  const double once = LevenbergMarquardtStep(counted, start, options).mean_square;
+  const double once = Step(counted, start, options).mean_square;
   const int calls_of_one = calls;
   calls = 0;
   options.updates = 3;
-  const double updated = LevenbergMarquardtStep(counted, start, options).mean_square;
+  const double updated = Step(counted, start, options).mean_square;
   EXPECT_LT(updated, 0.8 * once);
   EXPECT_GT(calls, calls_of_one);
   EXPECT_LE(calls, calls_of_one + 3 * 2);
@@ -96,15 +137,15 @@ TEST(LevenbergMarquardt, DifferentiatesWhatItIsToldTo) {
   const auto blind = [](const Eigen::VectorXd& x) { return Decay(Eigen::Vector2d(x[0], 0)); };
   const LevenbergMarquardtState start{Eigen::Vector2d(0.5, 0)};
   const LevenbergMarquardtOptions options{.precision = 1e-9};
-  EXPECT_NE(LevenbergMarquardtStep(Decay, start, options).x[1], 0);
-  const auto state = LevenbergMarquardtStep(Decay, start, options, blind);
+  EXPECT_NE(Step(Decay, start, options).x[1], 0);
+  const auto state = Step(Decay, start, options, blind);
   EXPECT_NE(state.x[0], 0.5);
   EXPECT_EQ(state.x[1], 0);
 }
 
 TEST(LevenbergMarquardt, StaysWhereResidualsDoNotExist) {
   const auto nowhere = [](const Eigen::VectorXd&) { return std::optional<Eigen::VectorXd>(); };
-  const auto state = LevenbergMarquardtStep(nowhere, {Eigen::Vector2d(1, 2)}, kNoPrior);
+  const auto state = Step(nowhere, {Eigen::Vector2d(1, 2)}, kNoPrior);
   EXPECT_EQ(state.x, Eigen::Vector2d(1, 2));
   EXPECT_TRUE(state.converged);
 }
@@ -125,7 +166,7 @@ TEST(LevenbergMarquardt, ParameterWhoseDifferenceDoesNotExistStaysInPlace) {
   };
   LevenbergMarquardtOptions options;
   options.precision = 1e-9;
-  const auto state = LevenbergMarquardtStep(walled, {Eigen::Vector2d(1, 0)}, options);
+  const auto state = Step(walled, {Eigen::Vector2d(1, 0)}, options);
   EXPECT_NEAR(state.x[0], 1, 0.3);  // the prior alone moves it
   EXPECT_NE(state.x[1], 0);
 }
@@ -136,7 +177,7 @@ TEST(LevenbergMarquardt, DoesNotMoveWhereNothingIsBetter) {
     return std::optional<Eigen::VectorXd>(
         Eigen::VectorXd::Constant(1, 1 + (x - Eigen::Vector2d(1, 1)).cwiseAbs().sum()));
   };
-  const auto state = LevenbergMarquardtStep(cusp, {Eigen::Vector2d(1, 1)}, kNoPrior);
+  const auto state = Step(cusp, {Eigen::Vector2d(1, 1)}, kNoPrior);
   EXPECT_EQ(state.x, Eigen::Vector2d(1, 1));
   EXPECT_TRUE(state.converged);
 }

@@ -5,8 +5,10 @@
 
 #include <map>
 
+#include "tests/support/lanes.h"
 #include "tests/support/random_system.h"
 #include "tests/support/targeted_rollout.h"
+#include "twin/effects/body_coordinate.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
@@ -129,6 +131,18 @@ TEST_P(Effects, KeepsTheOtherDerivativesRight) {
   }
 }
 
+TEST_P(Effects, ActsSideBySideAsAlone) {
+  std::vector<TargetedRollout> rollouts;
+  for (int i = 0; i < 6; ++i) {
+    std::vector<double> values = CaseOf(*GetParam()).values;
+    for (double& value : values) value *= 1 - 0.05 * i;
+    rollout.system.effects = {Values(*GetParam(), values)};
+    ReadFrames();
+    rollouts.push_back(rollout);
+  }
+  EXPECT_EQ(DifferenceSideBySide(rollouts), "");
+}
+
 TEST_P(Effects, ChangesNothingAtZero) {
   const std::vector<Points> without = Simulate<double>(rollout);
   rollout.system.effects = {
@@ -223,6 +237,20 @@ TEST(EffectJson, IsNotNestedDeep) {
       EXPECT_EQ(std::string(error.what()), "a twin: is nested more than 32 deep");
     }
   }
+}
+
+// A rod of 200 nodes, 5 mm apart.
+TEST(PatchWeights, OfNodesFarAwayAreZeroAndNotNearlyZero) {
+  constexpr int kNodes = 200;
+  SpringMassSystem rod;
+  rod.position = Points::Zero(3, kNodes);
+  rod.position.row(0).setLinSpaced(kNodes, 0, 0.995);
+  rod.mass.setConstant(kNodes, 0.01);
+  for (int i = 1; i < kNodes; ++i) rod.springs.push_back({i - 1, i});
+  const Eigen::VectorXd weights = PatchWeights(rod, rod.position.col(50));
+  EXPECT_GT(weights[50], 0.5);
+  EXPECT_NEAR(weights.sum(), 1, 1e-14);
+  for (double weight : weights) EXPECT_TRUE(weight == 0 || weight > 1e-90) << weight;
 }
 
 TEST(IsAtBound, IsSoNearEitherEndButNotAtNothing) {

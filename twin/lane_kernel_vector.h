@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernel for rollouts side by side (lane_kernel.h): the formulas of spring_force.cc,
+// node_update.cc and contact.cc, on a vector of lanes. `Lanes` holds what depends on the
+// instruction set. It is a type of an anonymous namespace (spring_law.h says why).
+#ifndef PHYSPRING_TWIN_LANE_KERNEL_VECTOR_H_
+#define PHYSPRING_TWIN_LANE_KERNEL_VECTOR_H_
+
+#include "twin/lane_kernel.h"
+#include "twin/spring_law.h"
+
+namespace physpring {
+
+template <class Lanes>
+struct LaneVectorKernel {
+  using Real = typename Lanes::Real;
+  using V = typename Lanes::V;  // a number of each lane
+  using Law = SpringLaw<Lanes>;
+  static constexpr int kLanes = Lanes::kLanes;
+
+  static V Load(const Real* numbers, int i) { return Lanes::Load(numbers + kLanes * i); }
+  static void Store(V x, Real* numbers, int i) { Lanes::Store(x, numbers + kLanes * i); }
+
+  // The four springs of a block: d = x_a - x_b, d . u with u = v_a - v_b, and l. Roots and
+  // divisions take long, and there is a unit of its own for them.
+  struct Block {
+    V d[kSpringBlock][3], d_u[kSpringBlock], length[kSpringBlock], inverse[kSpringBlock];
+
+    void Measure(const LaneSprings<Real>& springs, int block, const Real* state) {
+      const Real* a = state + kLanes * kLaneState * springs.a[block];
+      for (int s = 0; s < kSpringBlock; ++s) {
+        const Real* b = state + kLanes * kLaneState * springs.b[kSpringBlock * block + s];
+        V u[3];
+        for (int j = 0; j < 3; ++j) {
+          d[s][j] = Load(a, j) - Load(b, j);
+          u[j] = Load(a, kLaneVelocity + j) - Load(b, kLaneVelocity + j);
+        }
+        length[s] = Lanes::Sqrt(Law::Dot(d[s], d[s]));
+        inverse[s] = Lanes::Inverse(length[s]);
+        d_u[s] = Law::Dot(d[s], u);
+      }
+    }
+
+    Law Evaluate(const LaneSprings<Real>& springs, int block, int s, V tension) const {
+      const int i = kSpringBlock * block + s;
+      Law law;
+      law.k = Load(springs.parameters, kLaneSpring * i);
+      law.L = Load(springs.parameters, kLaneSpring * i + 1);
+      law.c = Load(springs.parameters, kLaneSpring * i + 2);
+      law.T = tension;
+      law.Evaluate(length[s], inverse[s], d_u[s]);
+      return law;
+    }
+  };
+
+  static void MeasureSprings(const LaneSprings<Real>& springs, const Real* state, Real* length,
+                             Real* rate) {
+    for (int i = 0; i < springs.blocks; ++i) {
+      Block block;
+      block.Measure(springs, i, state);
+      for (int s = 0; s < kSpringBlock; ++s) {
+        const Law law = block.Evaluate(springs, i, s, -V{});
+        Store(law.length, length, kSpringBlock * i + s);
+        Store(law.rate, rate, kSpringBlock * i + s);
+      }
+    }
+  }
+
+  static void AddSpringForces(const LaneSprings<Real>& springs, const Real* state, Real* force) {
+    springs.tension != nullptr ? AddForces<true>(springs, state, force)
+                               : AddForces<false>(springs, state, force);
+  }
+
+  // Two functions, so that springs without effects do not pay for them. A block is measured before
+  // the forces of the one before it are added: else the processor would wait for the roots.
+  template <bool kHasTension>
+  static void AddForces(const LaneSprings<Real>& springs, const Real* state, Real* force) {
+    if (springs.blocks == 0) return;
+    Block even, odd;
+    even.Measure(springs, 0, state);
+    for (int i = 0; i < springs.blocks; i += 2) {
+      odd.Measure(springs, i + 1, state);
+      AddBlock<kHasTension>(springs, i, even, force);
+      if (i + 2 < springs.blocks) even.Measure(springs, i + 2, state);
+      AddBlock<kHasTension>(springs, i + 1, odd, force);
+    }
+  }
+
+  // f_b += scale d, f_a -= the sum of the block
+  template <bool kHasTension>
+  static void AddBlock(const LaneSprings<Real>& springs, int i, const Block& block, Real* force) {
+    Real* a = force + kLanes * kLaneForce * springs.a[i];
+    const int* b = springs.b + kSpringBlock * i;
+    V sum[3];
+    for (int s = 0; s < kSpringBlock; s += 2) {
+      V pair[2][3];
+      for (int t = 0; t < 2; ++t) {
+        V tension = -V{};
+        if constexpr (kHasTension) tension = Load(springs.tension, kSpringBlock * i + s + t);
+        const V scale = block.Evaluate(springs, i, s + t, tension).scale;
+        Real* f = force + kLanes * kLaneForce * b[s + t];
+        for (int j = 0; j < 3; ++j) {
+          pair[t][j] = scale * block.d[s + t][j];
+          Store(Load(f, j) + pair[t][j], f, j);
+        }
+      }
+      for (int j = 0; j < 3; ++j) {
+        const V both = pair[0][j] + pair[1][j];
+        sum[j] = s == 0 ? both : sum[j] + both;
+      }
+    }
+    for (int j = 0; j < 3; ++j) Store(Load(a, j) - sum[j], a, j);
+  }
+
+  static void UpdateVelocities(const LaneNodes<Real>& nodes, const Real* state, const Real* force,
+                               Real* next) {
+    const V decay = Load(nodes.decay, 0);
+    const V kick[3] = {Load(nodes.kick, 0), Load(nodes.kick, 1), Load(nodes.kick, 2)};
+    for (int i = 0; i < nodes.nodes; ++i) {
+      const V h_over_mass = Load(nodes.h_over_mass, i);
+      for (int j = 0; j < 3; ++j) {
+        const int v = kLaneState * i + kLaneVelocity + j;
+        const V p = Load(state, v) + (Load(force, kLaneForce * i + j) * h_over_mass + kick[j]);
+        Store(p * decay, next, v);
+      }
+    }
+  }
+
+  static void UpdatePositions(const LaneNodes<Real>& nodes, const Real* state, Real* next) {
+    const V h = Lanes::Set(nodes.h);
+    for (int i = 0; i < nodes.nodes; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const int x = kLaneState * i + j;
+        Store(Load(state, x) + h * Load(next, x + kLaneVelocity), next, x);
+      }
+    }
+  }
+
+  // normal . x, in the order of Contact
+  static V Along(const V (&normal)[3], const Real* x) {
+    return normal[0] * Load(x, 0) + (normal[1] * Load(x, 1) + normal[2] * Load(x, 2));
+  }
+
+  static int FindTouches(const LaneNodes<Real>& nodes, const LaneGround<Real>& ground,
+                         const Real* state, const Real* next, LaneTouch* touches) {
+    const V normal[3] = {Lanes::Set(ground.normal[0]), Lanes::Set(ground.normal[1]),
+                         Lanes::Set(ground.normal[2])};
+    const V offset = Lanes::Set(ground.offset), h = Lanes::Set(nodes.h);
+    const V slowest = Lanes::Set(-ground.approach);
+    int count = 0;
+    for (int i = 0; i < nodes.nodes; ++i) {
+      const V gap = Along(normal, state + kLanes * kLaneState * i) - offset;
+      const V approach = Along(normal, next + kLanes * (kLaneState * i + kLaneVelocity));
+      const V after = gap - Load(ground.radius, i) + h * approach;
+      const unsigned lanes = Lanes::Less(after, V{}) & Lanes::Less(approach, slowest);
+      if (lanes != 0) touches[count++] = {i, lanes};
+    }
+    return count;
+  }
+
+  // In squares of numbers, and what is left over one by one.
+  static void Interleave(const Real* const* rows, int count, Real* side_by_side) {
+    constexpr int kSize = Lanes::Square::kSize;
+    const int whole = count - count % kSize;
+    for (int i = 0; i < whole; i += kSize) {
+      for (int l = 0; l < kLanes; l += kSize) {
+        typename Lanes::Square square;
+        for (int k = 0; k < kSize; ++k) square.Load(rows[l + k] + i, k);
+        square.Transpose();
+        for (int k = 0; k < kSize; ++k) square.Store(side_by_side + kLanes * (i + k) + l, k);
+      }
+    }
+    for (int i = whole; i < count; ++i) {
+      for (int l = 0; l < kLanes; ++l) side_by_side[kLanes * i + l] = rows[l][i];
+    }
+  }
+  static void Separate(const Real* side_by_side, int count, Real* const* rows) {
+    constexpr int kSize = Lanes::Square::kSize;
+    const int whole = count - count % kSize;
+    for (int i = 0; i < whole; i += kSize) {
+      for (int l = 0; l < kLanes; l += kSize) {
+        typename Lanes::Square square;
+        for (int k = 0; k < kSize; ++k) square.Load(side_by_side + kLanes * (i + k) + l, k);
+        square.Transpose();
+        for (int k = 0; k < kSize; ++k) square.Store(rows[l + k] + i, k);
+      }
+    }
+    for (int i = whole; i < count; ++i) {
+      for (int l = 0; l < kLanes; ++l) rows[l][i] = side_by_side[kLanes * i + l];
+    }
+  }
+
+  static constexpr LaneKernel<Real> kKernel = {
+      Lanes::kName,     kLanes,          Lanes::kTime, MeasureSprings, AddSpringForces,
+      UpdateVelocities, UpdatePositions, FindTouches,  Interleave,     Separate};
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_LANE_KERNEL_VECTOR_H_

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/lane_step.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace physpring {
+
+template <class Real>
+LaneStep<Real>::LaneStep(const std::vector<const LevelStep<Real>*>& levels,
+                         const std::vector<NodeView<Real>>& nodes, const LaneKernel<Real>& kernel)
+    : levels_(levels),
+      kernel_(kernel),
+      nodes_(nodes[0].nodes),
+      springs_(level().springs().size()),
+      h_(nodes[0].h),
+      needs_nodes_(level().effects().has_node_forces() ||
+                   level().effects().tensions().needs_nodes()),
+      h_over_mass_(nodes_, kernel.lanes),
+      decay_(1, kernel.lanes),
+      kick_(3, kernel.lanes),
+      parameters_(kLaneSpring * springs_, kernel.lanes),
+      radius_(nodes_, kernel.lanes),
+      force_(kLaneForce * level().first_internal(), kernel.lanes),
+      length_(springs_, kernel.lanes),
+      rate_(springs_, kernel.lanes),
+      tension_(springs_, kernel.lanes),
+      effects_(levels.size()),
+      impacts_(levels.size()),
+      touches_(nodes_),
+      own_(kernel.lanes, nullptr),
+      rows_(kernel.lanes, nullptr),
+      spare_(std::max(kLaneState * level().first_internal(), springs_)) {
+  assert(levels.size() <= static_cast<std::size_t>(kernel.lanes) && levels.size() == nodes.size());
+  SetParameters(nodes);
+}
+
+template <class Real>
+void LaneStep<Real>::SetParameters(const std::vector<NodeView<Real>>& nodes) {
+  const int lanes = kernel_.lanes;
+  for (std::size_t n = 0; n < levels_.size(); ++n) {
+    const int lane = static_cast<int>(n);
+    const SpringBlocks<Real>& springs = levels_[n]->springs();
+    assert(springs.a == level().springs().a && springs.b == level().springs().b);
+    for (int i = 0; i < springs_; ++i) {
+      Real* spring = parameters_.data() + kLaneSpring * lanes * i + lane;
+      spring[0] = springs.stiffness[i];
+      spring[lanes] = springs.rest_length[i];
+      spring[2 * lanes] = springs.dashpot[i];
+    }
+    for (int i = 0; i < nodes_; ++i) {
+      h_over_mass_.data()[lanes * i + lane] = nodes[n].h_over_mass[i];
+      radius_.data()[lanes * i + lane] = levels_[n]->contact().radius()[i];
+    }
+    decay_.data()[lane] = nodes[n].decay;
+    for (int j = 0; j < 3; ++j) kick_.data()[lanes * j + lane] = nodes[n].kick.f[j];
+  }
+}
+
+template <class Real>
+void LaneStep<Real>::Interleave(const std::vector<State*>& states, int first, int count,
+                                Real* side_by_side) {
+  std::fill(spare_.begin(), spare_.end(), Real(0));
+  for (int l = 0; l < kernel_.lanes; ++l) {
+    rows_[l] = states[l] != nullptr ? Internal(states[l], first) : spare_.data();
+  }
+  kernel_.interleave(rows_.data(), kLaneState * count,
+                     side_by_side + kLaneState * kernel_.lanes * first);
+}
+
+template <class Real>
+void LaneStep<Real>::Separate(const Real* side_by_side, int first, int count,
+                              const std::vector<State*>& states) {
+  for (int l = 0; l < kernel_.lanes; ++l) {
+    rows_[l] = states[l] != nullptr ? Internal(states[l], first) : spare_.data();
+  }
+  kernel_.separate(side_by_side + kLaneState * kernel_.lanes * first, kLaneState * count,
+                   rows_.data());
+}
+
+template <class Real>
+void LaneStep<Real>::SeparateNodes(const Lanes& lanes, const Real* side_by_side,
+                                   State* LaneNow<Real>::*of) {
+  std::fill(own_.begin(), own_.end(), nullptr);
+  for (const LaneNow<Real>& one : lanes) own_[one.lane] = one.*of;
+  Separate(side_by_side, 0, nodes_, own_);
+}
+
+template <class Real>
+void LaneStep<Real>::Advance(const Lanes& lanes, const Real* state, Real* next) {
+  if (needs_nodes_) SeparateNodes(lanes, state, &LaneNow<Real>::state);
+  const SpringView<Real> view = level().springs().View();
+  LaneSprings<Real> springs{view.blocks, view.a, view.b, parameters_.data()};
+  if (level().effects().tensions().along()) springs.tension = AddTensions(lanes, state);
+  force_.Clear();
+  kernel_.add_spring_forces(springs, state, force_.data());
+  if (level().effects().has_node_forces()) AddNodeForces(lanes);
+  kernel_.update_velocities(Nodes(), state, force_.data(), next);
+  ApplyContacts(lanes, state, next);
+  kernel_.update_positions(Nodes(), state, next);
+}
+
+template <class Real>
+const Real* LaneStep<Real>::AddTensions(const Lanes& lanes, const Real* state) {
+  const SpringView<Real> view = level().springs().View();
+  kernel_.measure_springs({view.blocks, view.a, view.b, parameters_.data()}, state, length_.data(),
+                          rate_.data());
+  std::fill(rows_.begin(), rows_.end(), spare_.data());
+  for (const LaneNow<Real>& one : lanes) {
+    const TensionStep<Real>& tensions = levels_[one.lane]->effects().tensions();
+    rows_[one.lane] = tensions.Measures(&effects_[one.lane].tension).length;
+  }
+  kernel_.separate(length_.data(), springs_, rows_.data());
+  for (const LaneNow<Real>& one : lanes) rows_[one.lane] = effects_[one.lane].tension.rate.data();
+  kernel_.separate(rate_.data(), springs_, rows_.data());
+  for (const LaneNow<Real>& one : lanes) {
+    const LevelStep<Real>& level = *levels_[one.lane];
+    EffectBuffers<Real>& buffers = effects_[one.lane];
+    level.effects().tensions().AddTensions(level.EffectsOf(one.now, *one.state), one.next,
+                                           &buffers.tension);
+    rows_[one.lane] = buffers.tension.tension.data();
+  }
+  kernel_.interleave(rows_.data(), springs_, tension_.data());
+  return tension_.data();
+}
+
+template <class Real>
+void LaneStep<Real>::AddNodeForces(const Lanes& lanes) {
+  for (const LaneNow<Real>& one : lanes) {
+    const LevelStep<Real>& level = *levels_[one.lane];
+    EffectBuffers<Real>& buffers = effects_[one.lane];
+    level.effects().ComputeNodeForces(level.EffectsOf(one.now, *one.state), one.next, &buffers);
+    const double* added = buffers.force.data();
+    Real* force = force_.data() + one.lane;
+    for (int i = 0; i < 3 * nodes_; ++i) force[kernel_.lanes * i] += static_cast<Real>(added[i]);
+  }
+}
+
+template <class Real>
+void LaneStep<Real>::ApplyContacts(const Lanes& lanes, const Real* state, Real* next) {
+  const bool only_ground = std::all_of(lanes.begin(), lanes.end(), [](const LaneNow<Real>& one) {
+    return one.now.pairs.empty() && one.now.geoms.empty();
+  });
+  if (!only_ground) {
+    ApplyAllContacts(lanes, state, next);
+  } else if (level().contact().has_ground()) {
+    ApplyGround(lanes, state, next);
+  }
+}
+
+template <class Real>
+void LaneStep<Real>::ApplyAllContacts(const Lanes& lanes, const Real* state, Real* next) {
+  if (!needs_nodes_) SeparateNodes(lanes, state, &LaneNow<Real>::state);
+  SeparateNodes(lanes, next, &LaneNow<Real>::next);
+  for (const auto& [lane, now, own_state, own_next] : lanes) {
+    levels_[lane]->contact().Apply(*own_state, now.pairs, now.geoms, now.elapsed, now.h, own_next,
+                                   &impacts_[lane]);
+  }
+  Interleave(own_, 0, nodes_, next);
+}
+
+template <class Real>
+void LaneStep<Real>::ApplyGround(const Lanes& lanes, const Real* state, Real* next) {
+  const Contact<Real>& contact = level().contact();
+  const auto& normal = contact.ground_normal();
+  const LaneGround<Real> ground{{normal[0], normal[1], normal[2]},
+                                contact.ground_offset(),
+                                radius_.data(),
+                                static_cast<Real>(kApproach)};
+  const int count = kernel_.find_touches(Nodes(), ground, state, next, touches_.data());
+  for (int t = 0; t < count; ++t) {
+    const LaneTouch& touch = touches_[t];
+    for (const LaneNow<Real>& one : lanes) {
+      if ((touch.lanes >> one.lane & 1U) == 0) continue;
+      Real* v = next + kernel_.lanes * (kLaneState * touch.node + kLaneVelocity) + one.lane;
+      const auto after =
+          levels_[one.lane]->contact().AfterGround({v[0], v[kernel_.lanes], v[2 * kernel_.lanes]});
+      for (int j = 0; j < 3; ++j) v[kernel_.lanes * j] = after[j];
+    }
+  }
+}
+
+template class LaneStep<float>;
+template class LaneStep<double>;
+
+}  // namespace physpring
