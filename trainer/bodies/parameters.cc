@@ -12,23 +12,27 @@ namespace physpring {
 namespace {
 
 // Classes of about equal rest length: a new class begins where the sorted lengths jump by `jump`;
-// where that gives many classes (an irregular mesh), equally filled ones.
-std::vector<int> LengthClasses(const Eigen::VectorXd& length, double jump) {
+// where that gives many classes or a wide one (an irregular mesh), equally filled ones.
+std::vector<int> LengthClasses(const Eigen::VectorXd& length, double jump, int equal_classes) {
   constexpr int kMostClasses = 10;
-  constexpr int kEqualClasses = 6;
+  constexpr double kWidest = 1.2;  // the longest spring of a class, relative to its shortest
   const int springs = static_cast<int>(length.size());
   std::vector<int> sorted(springs), length_class(springs);
   std::iota(sorted.begin(), sorted.end(), 0);
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](int i, int j) { return length[i] < length[j]; });
   int last = 0;
+  double shortest = 0, widest = 1;
   for (int i = 0; i < springs; ++i) {
-    if (i > 0 && length[sorted[i]] > jump * length[sorted[i - 1]]) ++last;
+    const bool first = i == 0 || length[sorted[i]] > jump * length[sorted[i - 1]];
+    if (first) shortest = length[sorted[i]];
+    if (first && i > 0) ++last;
+    widest = std::max(widest, length[sorted[i]] / shortest);
     length_class[sorted[i]] = last;
   }
-  if (last >= kMostClasses) {
+  if (last >= kMostClasses || widest > kWidest) {
     for (int i = 0; i < springs; ++i) {
-      length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * kEqualClasses / springs);
+      length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * equal_classes / springs);
     }
   }
   return length_class;
@@ -45,11 +49,12 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       options_(options),
       effects_(LastEffects(base, options.free_effects), options.moment_unit),
       springs_(base.spring_count()),
-      length_class_(options.length_classes ? LengthClasses(base.rest_length, options.class_jump)
-                                           : std::vector<int>(springs_, 0)),
+      length_class_(options.length_classes
+                        ? LengthClasses(base.rest_length, options.class_jump, options.equal_classes)
+                        : std::vector<int>(springs_, 0)),
       classes_(options.contact ? kContact + kContactCount : kContact),
       class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
-      modes_at_(classes_ + 2 * class_count_),
+      modes_at_(classes_ + (options.class_dashpots ? 2 : 1) * class_count_),
       effects_at_(modes_at_ + mode_count()),
       size_(effects_at_ + effects_.size()) {
   if (options.stretch) stretch_ = size_++;
@@ -129,8 +134,9 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
     const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
     const double stiffness = values[hand ? kControllerStiffness : kStiffness] +
                              values[ClassStiffness(e)] + field[e] + own_stiffness;
-    const double dashpot =
-        values[hand ? kControllerDashpot : kDashpot] + values[ClassDashpot(e)] + own_dashpot;
+    const int class_dashpot = ClassDashpot(e);
+    const double dashpot = values[hand ? kControllerDashpot : kDashpot] +
+                           (class_dashpot < 0 ? 0 : values[class_dashpot]) + own_dashpot;
     system.stiffness[e] *= std::exp(stiffness);
     if (options_.dashpots) {
       system.dashpot[e] *= std::exp(options_.loss_times ? stiffness + dashpot : dashpot);
@@ -168,7 +174,7 @@ Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringM
     bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
     bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;
     bar[ClassStiffness(e)] += stiffness_bar;
-    bar[ClassDashpot(e)] += dashpot_bar;
+    if (const int i = ClassDashpot(e); i >= 0) bar[i] += dashpot_bar;
     if (stiffness_ >= 0) bar[stiffness_ + e] = stiffness_bar;
     if (dashpot_ >= 0) bar[dashpot_ + e] = dashpot_bar;
     const double rest_length_bar = gradient.rest_length[e] * system.rest_length[e];

@@ -32,10 +32,12 @@ struct ParameterOptions {
   int free_effects = 0;        // so many of the base's effects, the last ones; the others stay
   double moment_unit = 1;      // of those that are moments (effect_entries.h)
   bool length_classes = true;  // else all springs are of one class
+  bool class_dashpots = true;  // dashpots of length classes, else one factor for all
   bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
   bool stretch = false;        // a factor for the strains of the base in its own positions
   bool loss_times = false;     // dashpots follow the stiffnesses; their entries are of loss times
   double class_jump = 1.03;    // a class ends where the sorted lengths jump by this factor
+  int equal_classes = 6;       // so many, equally filled, where that gives many (irregular meshes)
   // springs x modes: what the field of stiffness is made of; empty: there is none
   Eigen::MatrixXd modes = {};
 };
@@ -73,7 +75,10 @@ class Parameters {
   double StrainInBase(int e) const;
   int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
   int mode_count() const { return static_cast<int>(options_.modes.cols()); }
-  int ClassDashpot(int e) const { return classes_ + class_count_ + length_class_[e]; }
+  // -1: none
+  int ClassDashpot(int e) const {
+    return options_.class_dashpots ? classes_ + class_count_ + length_class_[e] : -1;
+  }
 
   SpringMassSystem base_;
   ParameterOptions options_;
@@ -81,7 +86,7 @@ class Parameters {
   int springs_;
   std::vector<int> length_class_;                         // of each spring
   int classes_;                                           // offset of the classes' stiffness ...
-  int class_count_;                                       // ... and dashpot after it
+  int class_count_;                                       // ... and dashpot, if any, after it
   int modes_at_;                                          // offset of the field's modes
   int effects_at_;                                        // offset of the effects' values
   int stretch_ = -1;                                      // offset of the stretch; -1: none

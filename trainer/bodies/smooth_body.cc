@@ -10,15 +10,19 @@ namespace physpring {
 namespace {
 
 constexpr int kModes = 8;
+// Of irregular meshes. Springs that are superfluous begin at some length: within one class they
+// could not be told from true ones.
+constexpr int kEqualClasses = 30;
 constexpr double kClassJump = 1.01;  // true and superfluous springs may differ in length by 1.5 %
-// Standard deviations of the prior.
-constexpr double kClassLossTime = 0.3, kMode = 0.5;
+constexpr double kMode = 0.5;        // the prior's standard deviation
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
                                const BodyKind& kind) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
+  options.class_dashpots = false;
   options.class_jump = kClassJump;
+  options.equal_classes = kEqualClasses;
   options.modes = SpringModes(start, kModes);
   return options;
 }
@@ -32,11 +36,8 @@ SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording
 
 Eigen::VectorXd SmoothBody::Precision() const {
   Eigen::VectorXd precision = Eigen::VectorXd::Constant(size(), kLevenbergMarquardtPrecision);
-  const auto set = [&](int i, double deviation) { precision[i] = 1 / (deviation * deviation); };
   for (int i = 0; i < size(); ++i) {
-    const Parameters::Kind kind = factors_.kind(i);
-    if (kind == Parameters::Kind::kClassDashpot) set(i, kClassLossTime);
-    if (kind == Parameters::Kind::kMode) set(i, kMode);
+    if (factors_.kind(i) == Parameters::Kind::kMode) precision[i] = 1 / (kMode * kMode);
   }
   return precision;
 }

@@ -2,7 +2,7 @@
 // A spring net as a material: few numbers say how stiff and how lossy its springs are, and none is
 // of a single spring. They are those of parameters.h:
 //   global      stiffness, loss time (dashpot / stiffness), drag, contact, effects
-//   classes     springs of one length: their stiffness, freely; their loss time, about the common
+//   classes     the stiffness of springs of one length
 //   one field       8 modes of stiffness along the body (spring_modes.h)
 // Single springs bend to one motion, and then predict no other one. These numbers do not: of bodies
 // that are networks they find the true ones (docs/decisions/111-smooth-bodies.md).

@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kParts = 8;          // a recording's fit frames are cut into so many parts ...
 constexpr int kOneHeldBackOf = 4;  // ... of which one in so many is held back
+// The earlier frames of a motion, of which the later ones are held back, as a part of all.
+constexpr double kEarlier = 2.0 / 3;
 
 // Whether frame 1 ... `last` is held back.
 bool IsHeldBack(int frame, int last) {
@@ -45,6 +47,8 @@ std::vector<Episode> EpisodesOf(const std::vector<SplitRecording>& recordings) {
 std::vector<Episode> HeldBack::FitEpisodes() const { return EpisodesOf(fit); }
 
 std::vector<Episode> HeldBack::JudgedEpisodes() const { return EpisodesOf(judged); }
+
+std::vector<Episode> HeldBackMotion::JudgedEpisodes() const { return EpisodesOf(judged); }
 
 std::vector<Episode> FitEpisodes(const FitData& data, int most) {
   std::vector<Episode> episodes;
@@ -92,6 +96,34 @@ HeldBack HoldBack(const FitData& data, int most) {
   for (const Recording* recording : SpreadEvenly(judged, most)) {
     split.judged.push_back(UseFitFrames(*recording, FrameUse::kHeld));
   }
+  return split;
+}
+
+HeldBackMotion HoldBackMotion(const FitData& data, int most) {
+  HeldBackMotion split;
+  const std::vector<bool> held_back = HeldBackRuns(data);
+  const bool has_runs = std::find(held_back.begin(), held_back.end(), true) != held_back.end();
+  for (std::size_t i = 0; i < data.recordings.size(); ++i) {
+    const Recording& recording = data.recordings[i];
+    if (has_runs) {
+      if (held_back[i]) {
+        split.judged.push_back(UseFitFrames(recording, FrameUse::kHeld));
+        continue;
+      }
+      split.fit.recordings.push_back(recording);
+    } else {
+      // at least one frame is fitted, and one held back where there are two
+      const int last = recording.train_frames - 1;
+      const int earlier = std::max(1, std::min(last - 1, static_cast<int>(kEarlier * last)));
+      split.judged.push_back(UseFitFrames(recording, FrameUse::kHeld));
+      for (int frame = 1; frame <= earlier; ++frame)
+        split.judged.back().use[frame] = FrameUse::kNone;
+      split.fit.recordings.push_back(recording);
+      split.fit.recordings.back().train_frames = earlier + 1;
+    }
+    split.fit.continuous_recording.push_back(data.continuous_recording[i]);
+  }
+  split.judged = SpreadEvenly(split.judged, most);
   return split;
 }
 

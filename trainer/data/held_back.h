@@ -26,6 +26,21 @@ struct HeldBack {
 // `most` recordings on each side, spread evenly. `data` must outlive the result.
 HeldBack HoldBack(const FitData& data, int most);
 
+// Motions that no fit has seen, by which a choice between bodies of few and of many numbers is
+// judged: blocks between fitted frames would not tell, since many numbers bend to both.
+struct HeldBackMotion {
+  FitData fit;                         // what to fit
+  std::vector<SplitRecording> judged;  // in use: what is held back
+
+  // Episodes of all fit frames. *this must outlive them.
+  std::vector<Episode> JudgedEpisodes() const;
+};
+
+// With four or more continuous runs, a quarter of them; otherwise the later third of each
+// recording's fit frames. At most `most` recordings are judged, spread evenly. `data` must outlive
+// the result.
+HeldBackMotion HoldBackMotion(const FitData& data, int most);
+
 // Whether each recording belongs to a run that is held back whole. A quarter of the runs are held
 // back, spread evenly; none if there are fewer than four.
 std::vector<bool> HeldBackRuns(const FitData& data);

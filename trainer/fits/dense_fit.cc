@@ -8,17 +8,14 @@
 #include "trainer/fits/body_choice.h"
 #include "trainer/fits/chain_fit.h"
 #include "trainer/fits/factor_fit.h"
-#include "trainer/fits/smooth_fit.h"
-#include "trainer/fits/spring_fit.h"
+#include "trainer/fits/net_fit.h"
 #include "twin/stability.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kMostCommonRecordings = 4;  // common factors are fitted to no more than these
-constexpr GainSchedule kAllGains{0, 6};
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kChosen = 0.45, kCommon = 0.5;
+constexpr double kChosen = 0.45;
 
 Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& data,
             const TrainOptions& options) {
@@ -43,26 +40,11 @@ Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work
   const Body& body = model.body;
   work.Reached(TwinOf(model.System(first), body, data, options));
 
-  const bool has_springs = choice.springs.size() > 0 && GaussNewtonSteps(options) > 0;
   if (!body.kind->has_single_springs()) {
     model = FitChain(model, data, options, work.Part("chain", kChosen, 1));
-  } else if (options.method == TrainOptions::Method::kSmooth) {
-    return TwinOf(FitSmoothBody(model, FitEpisodes(data, kMostCommonRecordings), options,
-                                work.Part("smooth body", kChosen, 1)),
-                  body, data, options);
-  } else if (!has_springs) {
-    model.factors = model.start;
-    model = FitCommonFactors(model, FitEpisodes(data, kMostCommonRecordings), options, kAllGains,
-                             work.Part("common factors", kChosen, kCommon));
+    return TwinOf(model.System(first), body, data, options);
   }
-
-  const Parameters springs = SpringFactors(model.System(first), first, *body.kind);
-  Eigen::VectorXd x = has_springs ? choice.springs : Eigen::VectorXd::Zero(springs.size());
-  work.Reached(TwinOf(springs.Apply(x), body, data, options));
-  if (body.kind->has_single_springs()) {
-    x = FitSprings(model, data, options, x, work.Part("single springs", kCommon, 1));
-  }
-  return TwinOf(springs.Apply(x), body, data, options);
+  return TwinOf(FitNet(choice, data, options, work.Part("net", kChosen, 1)), body, data, options);
 }
 
 }  // namespace physpring

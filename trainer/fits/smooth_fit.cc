@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "trainer/bodies/smooth_body.h"
 #include "trainer/motion/observer.h"
 
 namespace physpring {
 namespace {
 
 // The most steps with each gain, and when they end: a gain above 0 only shows the way.
-constexpr int kFollowedSteps = 8, kFreeSteps = 24;
+constexpr int kGuidedSteps = 8, kFreeSteps = 24;
 constexpr double kFollowedTolerance = 2e-3, kFreeTolerance = 1e-5;
 constexpr int kUpdates = 4;              // of the Jacobian in a step
 constexpr double kSmoothDamping = 1e-2;  // the damping with which each gain begins
@@ -38,26 +37,24 @@ SpringMassSystem StartOf(const ChosenBody& chosen, const Recording& recording) {
 // What is fitted, and to what.
 class SmoothFit {
  public:
-  SmoothFit(const ChosenBody& chosen, const std::vector<Episode>& episodes,
+  SmoothFit(const SmoothBody& body, const ChosenBody& chosen, const std::vector<Episode>& episodes,
             const TrainOptions& options)
-      : chosen_(chosen),
+      : body_(body),
+        chosen_(chosen),
         episodes_(episodes),
         options_(options),
-        recording_(OnlyFitFrames(episodes.at(0))),
-        body_(StartOf(chosen, recording_), recording_, *chosen.body.kind,
-              MostRate(options, recording_)) {}
+        recording_(OnlyFitFrames(episodes.at(0))) {}
 
-  const SmoothBody& body() const { return body_; }
   StepReport Step(SmoothState* state) const;
 
  private:
   MotionProblem::Options Follow(double gain) const;
 
+  const SmoothBody& body_;
   const ChosenBody& chosen_;
   const std::vector<Episode>& episodes_;
   const TrainOptions& options_;
   Recording recording_;
-  SmoothBody body_;
 };
 
 MotionProblem::Options SmoothFit::Follow(double gain) const {
@@ -73,7 +70,7 @@ SystemMap MapOf(const SmoothBody& body) {
 
 StepReport SmoothFit::Step(SmoothState* state) const {
   const double gain = kObserverGains[state->gain];
-  const int most_steps = state->gain == kLastGain ? kFreeSteps : kFollowedSteps;
+  const int most_steps = state->gain == kLastGain ? kFreeSteps : kGuidedSteps;
   MotionProblem problem(MapOf(body_), episodes_, Follow(gain));
   // a sub-step more or less would look like a slope
   MotionProblem::Options kept = Follow(gain);
@@ -104,13 +101,29 @@ StepReport SmoothFit::Step(SmoothState* state) const {
   return report;
 }
 
+SmoothlyFitted Fit(const SmoothlyFitted& start, int first_gain, const ChosenBody& chosen,
+                   const std::vector<Episode>& episodes, const TrainOptions& options,
+                   const Work& work) {
+  const SmoothFit fit(start.body, chosen, episodes, options);
+  return {start.body, work.Follow(SmoothState{start.x, first_gain},
+                                  [&](SmoothState* one) { return fit.Step(one); })
+                          .x};
+}
+
 }  // namespace
 
-SpringMassSystem FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                               const TrainOptions& options, const Work& work) {
-  const SmoothFit fit(chosen, episodes, options);
-  const SmoothState start{Eigen::VectorXd::Zero(fit.body().size())};
-  return fit.body().Apply(work.Follow(start, [&](SmoothState* one) { return fit.Step(one); }).x);
+SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
+                             const TrainOptions& options, const Work& work) {
+  const Recording recording = OnlyFitFrames(episodes.at(0));
+  const SmoothBody body(StartOf(chosen, recording), recording, *chosen.body.kind,
+                        MostRate(options, recording));
+  return Fit({body, Eigen::VectorXd::Zero(body.size())}, 0, chosen, episodes, options, work);
+}
+
+SmoothlyFitted FitOn(const SmoothlyFitted& start, const ChosenBody& chosen,
+                     const std::vector<Episode>& episodes, const TrainOptions& options,
+                     const Work& work) {
+  return Fit(start, kLastGain, chosen, episodes, options, work);
 }
 
 }  // namespace physpring

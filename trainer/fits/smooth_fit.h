@@ -8,14 +8,28 @@
 #include <vector>
 
 #include "trainer/bodies/chosen_body.h"
+#include "trainer/bodies/smooth_body.h"
 #include "trainer/journal/work.h"
 
 namespace physpring {
 
-// The system of the chosen body whose numbers fit the episodes best. The contact with the ground
-// starts as chosen, all else as soft as the choice began.
-SpringMassSystem FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                               const TrainOptions& options, const Work& work);
+// A smooth body and its numbers.
+struct SmoothlyFitted {
+  SmoothBody body;
+  Eigen::VectorXd x;
+
+  SpringMassSystem System() const { return body.Apply(x); }
+};
+
+// The numbers that fit the episodes best. The contact with the ground starts as chosen, all else as
+// soft as the choice began.
+SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
+                             const TrainOptions& options, const Work& work);
+
+// The same for other episodes of the same object, from those numbers on, by free motions alone.
+SmoothlyFitted FitOn(const SmoothlyFitted& start, const ChosenBody& chosen,
+                     const std::vector<Episode>& episodes, const TrainOptions& options,
+                     const Work& work);
 
 }  // namespace physpring
 

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/fits/net_fit.h"
+
+#include <vector>
+
+#include "trainer/data/held_back.h"
+#include "trainer/fits/factor_fit.h"
+#include "trainer/fits/smooth_fit.h"
+#include "trainer/fits/spring_fit.h"
+#include "trainer/motion/residual_correlation.h"
+#include "trainer/motion/track_error.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more than these
+constexpr GainSchedule kAllGains{0, 6};
+// A smooth body whose residuals are correlated less than this has arrived. Those of true bodies
+// that are networks have -0.01 to 0.04, those of side valleys 0.4 to 0.9.
+constexpr double kArrived = 0.1;
+constexpr double kWorthIt = 0.95;  // single springs must lower the error to this share
+
+// Parts of the work, as measured on recordings of 80 to 500 particles.
+constexpr double kSmooth = 0.3, kTriedSmooth = 0.35, kTried = 0.6;
+
+class NetFit {
+ public:
+  NetFit(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
+         const Work& work)
+      : choice_(choice),
+        data_(data),
+        options_(options),
+        work_(work),
+        episodes_(FitEpisodes(data, kMostCommonRecordings)),
+        rollout_(FollowOptions(data.recordings.at(0), choice.model.body, options).rollout) {}
+
+  SpringMassSystem Run() const;
+
+ private:
+  const ChosenBody& model() const { return choice_.model; }
+  bool HasArrived(const SmoothlyFitted& smooth) const {
+    return ResidualCorrelation(smooth.System(), episodes_, rollout_) < kArrived;
+  }
+  bool PredictMore(const SmoothlyFitted& smooth) const;
+  SpringMassSystem FitAllSprings(double from) const;
+
+  const BodyChoice& choice_;
+  const FitData& data_;
+  const TrainOptions& options_;
+  const Work& work_;
+  std::vector<Episode> episodes_;  // all fit frames
+  RolloutOptions rollout_;         // a free motion
+};
+
+// The springs' own values, fitted to `data` from `x` on.
+SpringMassSystem FitSpringsOf(const ChosenBody& model, const FitData& data,
+                              const TrainOptions& options, const Eigen::VectorXd& x,
+                              const Work& work) {
+  const Recording& first = data.recordings.at(0);
+  return SpringFactors(model.System(first), first, *model.body.kind)
+      .Apply(FitSprings(model, data, options, x, work));
+}
+
+Eigen::VectorXd NoOwnValues(const ChosenBody& model, const Recording& first) {
+  return Eigen::VectorXd::Zero(SpringFactors(model.System(first), first, *model.body.kind).size());
+}
+
+// Whether single springs predict what is held back better than the smooth body.
+bool NetFit::PredictMore(const SmoothlyFitted& smooth) const {
+  const HeldBackMotion held_back = HoldBackMotion(data_, kMostCommonRecordings);
+  const std::vector<Episode> judged = held_back.JudgedEpisodes();
+  const auto error = [&](const SpringMassSystem& system) {
+    return GeometricTrackError(system, judged, FrameUse::kHeld, rollout_);
+  };
+  const std::vector<Episode> fit = FitEpisodes(held_back.fit, kMostCommonRecordings);
+  const SmoothlyFitted tried_smooth = FitOn(
+      smooth, model(), fit, options_, work_.Part("trial, smooth body", kSmooth, kTriedSmooth));
+  const SpringMassSystem tried_springs = FitSpringsOf(
+      model(), held_back.fit, options_, NoOwnValues(model(), held_back.fit.recordings.at(0)),
+      work_.Part("trial, single springs", kTriedSmooth, kTried));
+  return error(tried_springs) < kWorthIt * error(tried_smooth.System());
+}
+
+// Single springs, fitted to all data in the work from `from` on.
+SpringMassSystem NetFit::FitAllSprings(double from) const {
+  if (choice_.springs.size() > 0 && GaussNewtonSteps(options_) > 0) {
+    return FitSpringsOf(model(), data_, options_, choice_.springs,
+                        work_.Part("single springs", from, 1));
+  }
+  ChosenBody start = model();
+  start.factors = start.start;
+  const double common = from + 0.1 * (1 - from);
+  start = FitCommonFactors(start, episodes_, options_, kAllGains,
+                           work_.Part("common factors", from, common));
+  return FitSpringsOf(start, data_, options_, NoOwnValues(start, data_.recordings.at(0)),
+                      work_.Part("single springs", common, 1));
+}
+
+SpringMassSystem NetFit::Run() const {
+  const bool smooth_only = options_.method == TrainOptions::Method::kSmooth;
+  const bool springs_asked =
+      options_.epochs > 0 || options_.optimizer != TrainOptions::Optimizer::kAutomatic;
+  if (springs_asked && !smooth_only) return FitAllSprings(0);
+  const SmoothlyFitted smooth =
+      FitSmoothBody(model(), episodes_, options_, work_.Part("smooth body", 0, kSmooth));
+  if (smooth_only || HasArrived(smooth) || !PredictMore(smooth)) return smooth.System();
+  return FitAllSprings(kTried);
+}
+
+}  // namespace
+
+SpringMassSystem FitNet(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
+                        const Work& work) {
+  return NetFit(choice, data, options, work).Run();
+}
+
+}  // namespace physpring

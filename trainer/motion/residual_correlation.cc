@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/motion/residual_correlation.h"
+
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+// Sums over points that are seen in two fitted frames in a row.
+struct Sums {
+  double product = 0, square = 0;
+
+  void Add(const Episode& episode, const std::vector<Points>& particles);
+};
+
+void Sums::Add(const Episode& episode, const std::vector<Points>& particles) {
+  const std::vector<Points>& measured = episode.recording->points;
+  Points before;  // the errors of the frame before; none: it is not fitted
+  for (int frame = 1; frame < episode.frames; ++frame) {
+    if (episode.UseOf(frame) != FrameUse::kFit) {
+      before.resize(3, 0);
+      continue;
+    }
+    const Points error = particles[frame].leftCols(measured[frame].cols()) - measured[frame];
+    for (int i = 0; i < before.cols(); ++i) {
+      const double of_point = error.col(i).dot(before.col(i));
+      if (std::isnan(of_point)) continue;
+      product += of_point;
+      square += 0.5 * (error.col(i).squaredNorm() + before.col(i).squaredNorm());
+    }
+    before = error;
+  }
+}
+
+}  // namespace
+
+double ResidualCorrelation(const SpringMassSystem& system, const std::vector<Episode>& episodes,
+                           RolloutOptions options) {
+  const bool automatic = options.substeps == 0;
+  const StabilityBound bound = automatic ? ComputeStabilityBound(system) : StabilityBound{};
+  Sums sums;
+  for (const Episode& episode : episodes) {
+    if (automatic) {
+      options.substeps = StableSubsteps(bound, 1 / episode.recording->fps, kStepSafety);
+    }
+    const auto rollout = RollOut(system, episode, options);
+    if (rollout->diverged()) return 1;
+    sums.Add(episode, rollout->positions());
+  }
+  return sums.square > 0 ? sums.product / sums.square : 1;
+}
+
+}  // namespace physpring
