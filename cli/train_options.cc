@@ -58,8 +58,8 @@ void VisitFitOptions(Options& options, Visitor& visit) {
 template <class Options, class Visitor>
 void VisitTrainOptions(Options& options, Visitor& visit) {
   visit.Choice("--method", &options.method, kMethodWords,
-               "full: by gradients of whole rollouts; smooth: a material of few numbers, no single "
-               "springs; two-stage: as PhysTwin does");
+               "full: a smooth body of few numbers, or single springs where they predict better; "
+               "smooth: the smooth body; two-stage: as PhysTwin does");
   visit.Count("--levels", &options.levels, 1, 10, "levels of the twin, level 0 included");
   if (visit.all() || options.levels > 1) VisitHierarchyOptions(options, visit);
   VisitFitOptions(options, visit);

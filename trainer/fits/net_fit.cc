@@ -41,7 +41,7 @@ class NetFit {
   bool HasArrived(const SmoothlyFitted& smooth) const {
     return ResidualCorrelation(smooth.System(), episodes_, rollout_) < kArrived;
   }
-  bool PredictMore(const SmoothlyFitted& smooth) const;
+  bool PredictBetter(const SmoothlyFitted& smooth) const;
   SpringMassSystem FitAllSprings(double from) const;
 
   const BodyChoice& choice_;
@@ -66,7 +66,7 @@ Eigen::VectorXd NoOwnValues(const ChosenBody& model, const Recording& first) {
 }
 
 // Whether single springs predict what is held back better than the smooth body.
-bool NetFit::PredictMore(const SmoothlyFitted& smooth) const {
+bool NetFit::PredictBetter(const SmoothlyFitted& smooth) const {
   const HeldBackMotion held_back = HoldBackMotion(data_, kMostCommonRecordings);
   const std::vector<Episode> judged = held_back.JudgedEpisodes();
   const auto error = [&](const SpringMassSystem& system) {
@@ -103,7 +103,7 @@ SpringMassSystem NetFit::Run() const {
   if (springs_asked && !smooth_only) return FitAllSprings(0);
   const SmoothlyFitted smooth =
       FitSmoothBody(model(), episodes_, options_, work_.Part("smooth body", 0, kSmooth));
-  if (smooth_only || HasArrived(smooth) || !PredictMore(smooth)) return smooth.System();
+  if (smooth_only || HasArrived(smooth) || !PredictBetter(smooth)) return smooth.System();
   return FitAllSprings(kTried);
 }
 

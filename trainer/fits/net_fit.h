@@ -17,7 +17,10 @@ namespace physpring {
 // body. Where the options ask for steps or an optimizer of single springs, it has these. Else:
 //   1. The smooth body is fitted. It stays if it leaves no more than noise
 //   (residual_correlation.h).
-//   2. If not, both kinds are fitted to a part of the data, and judged on the rest by free motions
+//   2. If not, and if the single springs of the choice explain the fit frames better as they are,
+//   it
+//      gets single springs.
+//   3. Else both kinds are fitted to a part of the data, and judged on the rest by free motions
 //      (held_back.h). The better one is fitted to all.
 SpringMassSystem FitNet(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
                         const Work& work);

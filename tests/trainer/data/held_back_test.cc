@@ -116,5 +116,44 @@ TEST(FitEpisodes, AreAllFitFramesOfRecordingsSpreadEvenly) {
   }
 }
 
+TEST(HoldBackMotion, HoldsBackTheLaterThirdOfFewRecordings) {
+  const FitData data = OfRuns({0, 1});
+  const HeldBackMotion split = HoldBackMotion(data, 100);
+  ASSERT_EQ(split.fit.recordings.size(), 2u);
+  ASSERT_EQ(split.judged.size(), 2u);
+  const std::vector<Episode> judged = split.JudgedEpisodes();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int last = data.recordings[i].train_frames - 1;
+    const int earlier = split.fit.recordings[i].train_frames;
+    EXPECT_NEAR(earlier, 2. / 3 * last + 1, 1);
+    EXPECT_EQ(*Held(split.judged[i]).begin(), earlier);
+    EXPECT_EQ(*Held(split.judged[i]).rbegin(), last);
+    EXPECT_TRUE(Fit(split.judged[i]).empty());
+    EXPECT_EQ(judged[i].recording, &data.recordings[i]);
+    EXPECT_EQ(judged[i].frames, last + 1);
+  }
+}
+
+TEST(HoldBackMotion, HoldsBackWholeRunsWhereThereAreFour) {
+  const FitData data = OfRuns({0, 0, 1, 2, 2, 3});
+  const HeldBackMotion split = HoldBackMotion(data, 100);
+  ASSERT_EQ(split.judged.size() + split.fit.recordings.size(), data.recordings.size());
+  ASSERT_FALSE(split.judged.empty());
+  std::set<int> fit(split.fit.continuous_recording.begin(), split.fit.continuous_recording.end());
+  for (const SplitRecording& one : split.judged) {
+    EXPECT_FALSE(fit.contains(RunOf(data, *one.recording)));
+    EXPECT_EQ(Held(one).size(), one.recording->train_frames - 1u);
+  }
+  EXPECT_EQ(HoldBackMotion(data, 1).judged.size(), 1u);
+}
+
+TEST(HoldBackMotion, LeavesOneFrameOnEachSide) {
+  FitData data = OfRuns({0});
+  data.recordings[0].train_frames = 3;
+  const HeldBackMotion split = HoldBackMotion(data, 1);
+  EXPECT_EQ(split.fit.recordings[0].train_frames, 2);
+  EXPECT_EQ(Held(split.judged[0]), std::set<int>{2});
+}
+
 }  // namespace
 }  // namespace physpring
