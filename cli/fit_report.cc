@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "trainer/data/held_back.h"
+#include "trainer/motion/residual_correlation.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/plausibility.h"
@@ -13,7 +15,8 @@
 namespace physpring {
 namespace {
 
-constexpr double kNearer = 0.95;  // a tie is no warning
+constexpr double kNearer = 0.95;    // a tie is no warning
+constexpr int kMostRecordings = 4;  // tell whether noise is left
 
 // The mean over recordings of their mean track errors in frames [first, last), m; none without
 // data.
@@ -42,6 +45,18 @@ std::optional<double> MotionlessTrack(const std::vector<RecordingResult>& result
                                       const std::vector<int>& first, const std::vector<int>& last) {
   return MeanTrack(results, first, last,
                    [](const RecordingResult& one) { return one.baselines[0].errors; });
+}
+
+// Whether what level 0 leaves of the fit frames is noise.
+std::string WhatIsLeft(const Twin& twin, const FitData& data, bool single_precision) {
+  RolloutOptions rollout;
+  rollout.single_precision = single_precision;
+  rollout.controller_velocity = twin.controller_velocity;
+  const double correlation =
+      ResidualCorrelation(twin.levels[0].system, FitEpisodes(data, kMostRecordings), rollout);
+  return fmt::format(
+      "what is left is {} (the errors of one frame and the next correlate by {:.2f})",
+      correlation < kNoiseCorrelation ? "noise" : "more than noise", correlation);
 }
 
 std::string InMillimetres(const std::optional<double>& error) {
@@ -97,6 +112,7 @@ FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision,
   report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
                             InMillimetres(fit), InMillimetres(still));
   if (later) report.line += fmt::format("; on the later ones: {}", InMillimetres(later));
+  report.line += "\n" + WhatIsLeft(twin, data, single_precision);
   const std::string little = LittleExplained(results, first, split, data.recordings[0]);
   if (!little.empty()) report.warnings.push_back(little);
   if (later && report.warnings.empty()) {

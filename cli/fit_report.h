@@ -13,7 +13,7 @@
 namespace physpring {
 
 struct FitReport {
-  std::string line;                   // the errors on the fit frames, and on those after them
+  std::string line;  // the errors on the fit frames and after them; is what is left noise
   std::vector<std::string> warnings;  // a useless twin, and a baseline that is nearer
 };
 

@@ -31,8 +31,7 @@ ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& r
 
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
                        const BodyKind& kind, double most_rate)
-    : factors_(start, SmoothOptions(start, recording, kind)),
-      timestep_(1 / most_rate / kStepSafety) {}
+    : factors_(start, SmoothOptions(start, recording, kind)), most_rate_(most_rate) {}
 
 Eigen::VectorXd SmoothBody::Precision() const {
   Eigen::VectorXd precision = Eigen::VectorXd::Constant(size(), kLevenbergMarquardtPrecision);
@@ -44,7 +43,7 @@ Eigen::VectorXd SmoothBody::Precision() const {
 
 SpringMassSystem SmoothBody::Apply(const Eigen::VectorXd& x) const {
   SpringMassSystem system = factors_.Apply(x);
-  LimitDashpots(timestep_, &system);
+  LimitDashpots(1 / most_rate_ / kStepSafety, &system);
   return system;
 }
 

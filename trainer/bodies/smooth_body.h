@@ -22,6 +22,7 @@ class SmoothBody {
              double most_rate);
 
   int size() const { return factors_.size(); }
+  double most_rate() const { return most_rate_; }
   Eigen::VectorXd Precision() const;  // the prior's, of each entry
 
   // Where stiffness leaves too little room for them, the dashpots are lowered by one factor: a fit
@@ -30,7 +31,7 @@ class SmoothBody {
 
  private:
   Parameters factors_;
-  double timestep_;  // s, the shortest that a system may need
+  double most_rate_;
 };
 
 }  // namespace physpring

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/fits/net_fit.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "trainer/data/held_back.h"
@@ -15,13 +16,13 @@ namespace {
 
 constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more than these
 constexpr GainSchedule kAllGains{0, 6};
-// A smooth body whose residuals are correlated less than this has arrived. Those of true bodies
-// that are networks have -0.01 to 0.04, those of side valleys 0.4 to 0.9.
-constexpr double kArrived = 0.1;
-constexpr double kWorthIt = 0.95;  // single springs must lower the error to this share
+// The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
+constexpr double kSlowRate = 2500;
+constexpr double kWorthItsRate = 0.8;  // a body of a higher rate must lower the error to this share
+constexpr double kWorthIt = 0.95;      // single springs must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kSmooth = 0.3, kTriedSmooth = 0.35, kTried = 0.6;
+constexpr double kSlow = 0.1, kSmooth = 0.3, kTriedSmooth = 0.35, kTried = 0.6;
 
 class NetFit {
  public:
@@ -39,8 +40,12 @@ class NetFit {
  private:
   const ChosenBody& model() const { return choice_.model; }
   bool HasArrived(const SmoothlyFitted& smooth) const {
-    return ResidualCorrelation(smooth.System(), episodes_, rollout_) < kArrived;
+    return ResidualCorrelation(smooth.System(), episodes_, rollout_) < kNoiseCorrelation;
   }
+  double ErrorOf(const SmoothlyFitted& smooth) const {
+    return GeometricTrackError(smooth.System(), episodes_, FrameUse::kFit, rollout_);
+  }
+  SmoothlyFitted FitSmooth() const;
   bool PredictBetter(const SmoothlyFitted& smooth) const;
   SpringMassSystem FitAllSprings(double from) const;
 
@@ -63,6 +68,18 @@ SpringMassSystem FitSpringsOf(const ChosenBody& model, const FitData& data,
 
 Eigen::VectorXd NoOwnValues(const ChosenBody& model, const Recording& first) {
   return Eigen::VectorXd::Zero(SpringFactors(model.System(first), first, *model.body.kind).size());
+}
+
+// The smooth body; of two that have not arrived, the one whose sub-steps are long, unless the other
+// is much better.
+SmoothlyFitted NetFit::FitSmooth() const {
+  const double most = MostRate(options_, data_.recordings[0]), least = std::min(kSlowRate, most);
+  const SmoothlyFitted slow =
+      FitSmoothBody(model(), episodes_, options_, least, work_.Part("smooth body", 0, kSlow));
+  if (least == most || HasArrived(slow)) return slow;
+  const SmoothlyFitted fast = FitSmoothBody(model(), episodes_, options_, most,
+                                            work_.Part("smooth body, stiff", kSlow, kSmooth));
+  return HasArrived(fast) || ErrorOf(fast) < kWorthItsRate * ErrorOf(slow) ? fast : slow;
 }
 
 // Whether single springs predict what is held back better than the smooth body.
@@ -101,8 +118,7 @@ SpringMassSystem NetFit::Run() const {
   const bool springs_asked =
       options_.epochs > 0 || options_.optimizer != TrainOptions::Optimizer::kAutomatic;
   if (springs_asked && !smooth_only) return FitAllSprings(0);
-  const SmoothlyFitted smooth =
-      FitSmoothBody(model(), episodes_, options_, work_.Part("smooth body", 0, kSmooth));
+  const SmoothlyFitted smooth = FitSmooth();
   if (smooth_only || HasArrived(smooth) || !PredictBetter(smooth)) return smooth.System();
   return FitAllSprings(kTried);
 }

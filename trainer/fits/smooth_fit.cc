@@ -61,6 +61,7 @@ MotionProblem::Options SmoothFit::Follow(double gain) const {
   MotionProblem::Options follow = FollowOptions(recording_, chosen_.body, options_);
   follow.threads = 1;  // the differences run in parallel
   follow.rollout.observer_gain = gain;
+  follow.most_rate = body_.most_rate();
   return follow;
 }
 
@@ -113,10 +114,9 @@ SmoothlyFitted Fit(const SmoothlyFitted& start, int first_gain, const ChosenBody
 }  // namespace
 
 SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                             const TrainOptions& options, const Work& work) {
+                             const TrainOptions& options, double most_rate, const Work& work) {
   const Recording recording = OnlyFitFrames(episodes.at(0));
-  const SmoothBody body(StartOf(chosen, recording), recording, *chosen.body.kind,
-                        MostRate(options, recording));
+  const SmoothBody body(StartOf(chosen, recording), recording, *chosen.body.kind, most_rate);
   return Fit({body, Eigen::VectorXd::Zero(body.size())}, 0, chosen, episodes, options, work);
 }
 
