@@ -18,7 +18,7 @@ constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more
 constexpr GainSchedule kAllGains{0, 6};
 // The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
 constexpr double kSlowRate = 2500;
-constexpr double kWorthItsRate = 0.8;  // a body of a higher rate must lower the error to this share
+constexpr double kWorthItsRate = 0.5;  // a body of a higher rate must lower the error to this share
 constexpr double kWorthIt = 0.95;      // single springs must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
