@@ -2,6 +2,7 @@
 #include "trainer/fits/net_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "trainer/data/held_back.h"
@@ -18,8 +19,9 @@ constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more
 constexpr GainSchedule kAllGains{0, 6};
 // The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
 constexpr double kSlowRate = 2500;
-constexpr double kWorthItsRate = 0.5;  // a body of a higher rate must lower the error to this share
-constexpr double kWorthIt = 0.95;      // single springs must lower the error to this share
+// A body of a higher rate must lower the part of the error that is no noise to this share.
+constexpr double kWorthItsRate = 0.6;
+constexpr double kWorthIt = 0.95;  // single springs must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kSlow = 0.1, kSmooth = 0.3, kTriedSmooth = 0.35, kTried = 0.6;
@@ -39,11 +41,16 @@ class NetFit {
 
  private:
   const ChosenBody& model() const { return choice_.model; }
-  bool HasArrived(const SmoothlyFitted& smooth) const {
-    return ResidualCorrelation(smooth.System(), episodes_, rollout_) < kNoiseCorrelation;
+  double Correlation(const SmoothlyFitted& smooth) const {
+    return ResidualCorrelation(smooth.System(), episodes_, rollout_);
   }
-  double ErrorOf(const SmoothlyFitted& smooth) const {
-    return GeometricTrackError(smooth.System(), episodes_, FrameUse::kFit, rollout_);
+  bool HasArrived(const SmoothlyFitted& smooth) const {
+    return Correlation(smooth) < kNoiseCorrelation;
+  }
+  // The part of the error that is no noise, m.
+  double WrongBy(const SmoothlyFitted& smooth) const {
+    return std::sqrt(std::max(0.0, Correlation(smooth))) *
+           GeometricTrackError(smooth.System(), episodes_, FrameUse::kFit, rollout_);
   }
   SmoothlyFitted FitSmooth() const;
   bool PredictBetter(const SmoothlyFitted& smooth) const;
@@ -79,7 +86,7 @@ SmoothlyFitted NetFit::FitSmooth() const {
   if (least == most || HasArrived(slow)) return slow;
   const SmoothlyFitted fast = FitSmoothBody(model(), episodes_, options_, most,
                                             work_.Part("smooth body, stiff", kSlow, kSmooth));
-  return HasArrived(fast) || ErrorOf(fast) < kWorthItsRate * ErrorOf(slow) ? fast : slow;
+  return HasArrived(fast) || WrongBy(fast) < kWorthItsRate * WrongBy(slow) ? fast : slow;
 }
 
 // Whether single springs predict what is held back better than the smooth body.
