@@ -19,6 +19,9 @@ constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more
 constexpr GainSchedule kAllGains{0, 6};
 // The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
 constexpr double kSlowRate = 2500;
+// With a body whose residuals correlate less, no faster one is tried: one that is too slow may
+// leave little more than noise on the fit frames, and far more on another motion.
+constexpr double kSurelyNoise = 0.02;
 // A body of a higher rate must lower the part of the error that is no noise to this share.
 constexpr double kWorthItsRate = 0.6;
 constexpr double kWorthIt = 0.95;  // single springs must lower the error to this share
@@ -83,10 +86,10 @@ SmoothlyFitted NetFit::FitSmooth() const {
   const double most = MostRate(options_, data_.recordings[0]), least = std::min(kSlowRate, most);
   const SmoothlyFitted slow =
       FitSmoothBody(model(), episodes_, options_, least, work_.Part("smooth body", 0, kSlow));
-  if (least == most || HasArrived(slow)) return slow;
+  if (least == most || Correlation(slow) < kSurelyNoise) return slow;
   const SmoothlyFitted fast = FitSmoothBody(model(), episodes_, options_, most,
                                             work_.Part("smooth body, stiff", kSlow, kSmooth));
-  return HasArrived(fast) || WrongBy(fast) < kWorthItsRate * WrongBy(slow) ? fast : slow;
+  return WrongBy(fast) < kWorthItsRate * WrongBy(slow) ? fast : slow;
 }
 
 // Whether single springs predict what is held back better than the smooth body.
