@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/motion/residual_correlation.h"
 
-#include "twin/stability.h"
+#include "trainer/motion/track_error.h"
 
 namespace physpring {
 namespace {
@@ -36,17 +36,12 @@ void Sums::Add(const Episode& episode, const std::vector<Points>& particles) {
 
 double ResidualCorrelation(const SpringMassSystem& system, const std::vector<Episode>& episodes,
                            RolloutOptions options) {
-  const bool automatic = options.substeps == 0;
-  const StabilityBound bound = automatic ? ComputeStabilityBound(system) : StabilityBound{};
   Sums sums;
-  for (const Episode& episode : episodes) {
-    if (automatic) {
-      options.substeps = StableSubsteps(bound, 1 / episode.recording->fps, kStepSafety);
-    }
-    const auto rollout = RollOut(system, episode, options);
-    if (rollout->diverged()) return 1;
-    sums.Add(episode, rollout->positions());
-  }
+  const bool ended = VisitMotions(
+      system, episodes, options, [&](const Episode& episode, const std::vector<Points>& particles) {
+        sums.Add(episode, particles);
+      });
+  if (!ended) return 1;
   return sums.square > 0 ? sums.product / sums.square : 1;
 }
 

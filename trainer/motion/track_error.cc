@@ -41,20 +41,30 @@ double MeanTrackError(const Episode& episode, FrameUse use, const std::vector<Po
   return track.empty() ? 0 : Mean(track);
 }
 
-double GeometricTrackError(const SpringMassSystem& system, const std::vector<Episode>& episodes,
-                           FrameUse use, RolloutOptions options) {
+bool VisitMotions(
+    const SpringMassSystem& system, const std::vector<Episode>& episodes, RolloutOptions options,
+    const std::function<void(const Episode&, const std::vector<Points>& particles)>& visit) {
   const bool automatic = options.substeps == 0;
   const StabilityBound bound = automatic ? ComputeStabilityBound(system) : StabilityBound{};
-  double sum = 0;  // the sum of the errors' logarithms
   for (const Episode& episode : episodes) {
     if (automatic) {
       options.substeps = StableSubsteps(bound, 1 / episode.recording->fps, kStepSafety);
     }
     const auto rollout = RollOut(system, episode, options);
-    if (rollout->diverged()) return std::numeric_limits<double>::infinity();
-    const double error = MeanTrackError(episode, use, rollout->positions());
-    sum += std::log(std::max(error, kLeastError));
+    if (rollout->diverged()) return false;
+    visit(episode, rollout->positions());
   }
+  return true;
+}
+
+double GeometricTrackError(const SpringMassSystem& system, const std::vector<Episode>& episodes,
+                           FrameUse use, RolloutOptions options) {
+  double sum = 0;  // the sum of the errors' logarithms
+  const bool ended = VisitMotions(
+      system, episodes, options, [&](const Episode& episode, const std::vector<Points>& particles) {
+        sum += std::log(std::max(MeanTrackError(episode, use, particles), kLeastError));
+      });
+  if (!ended) return std::numeric_limits<double>::infinity();
   return std::exp(sum / static_cast<double>(episodes.size()));
 }
 
