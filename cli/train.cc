@@ -25,6 +25,7 @@
 #include "cli/train_options.h"
 #include "cli/training.h"
 #include "cli/warnings.h"
+#include "report/material_text.h"
 #include "trainer/bodies/factors.h"
 #include "trainer/data/fit_data.h"
 #include "trainer/reduction/registry.h"
@@ -144,6 +145,7 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
                level.substeps_per_second / run.twin.fps);
   }
   fmt::print("{}\n", fit_error);
+  if (run.twin.material) fmt::print("{}", DescribeMaterial(*run.twin.material));
   if (!run.status.empty()) fmt::print("{}\n", run.status);
   fmt::print("time: {}", FormatDuration(seconds));
   for (const auto& [part, part_seconds] : run.parts) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/info_text.h"
+#include "report/material_text.h"
 #include "twin/cone_name.h"
 #include "twin/contact_words.h"
 #include "twin/effects/effect_json.h"
@@ -143,7 +144,10 @@ std::string DescribeTwin(const Twin& twin) {
       twin.ground.known ? DescribeGround(twin.ground.plane)
                         : "not said (a file of an older program)",
       twin.seed, twin.options_json);
-  for (std::size_t i = 0; i < twin.levels.size(); ++i) text += DescribeLevel(twin.levels[i], i);
+  for (std::size_t i = 0; i < twin.levels.size(); ++i) {
+    text += DescribeLevel(twin.levels[i], i);
+    if (i == 0 && twin.material) text += DescribeMaterial(*twin.material);
+  }
   return text;
 }
 
@@ -171,6 +175,7 @@ Json TwinToJson(const Twin& twin) {
           {"trained_on", trained_on},
           {"seed", twin.seed},
           {"options", ParseJson(twin.options_json, "options")},
+          {"material", twin.material ? MaterialToJson(*twin.material) : Json(nullptr)},
           {"levels", levels}};
 }
 

@@ -6,6 +6,7 @@
 #ifndef PHYSPRING_TWIN_SPRING_MASS_SYSTEM_H_
 #define PHYSPRING_TWIN_SPRING_MASS_SYSTEM_H_
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -44,6 +45,10 @@ struct SpringMassSystem {
 
   int node_count() const { return static_cast<int>(position.cols()) - controllers; }
   int spring_count() const { return static_cast<int>(springs.size()); }
+  // Whether a spring has a controller at one end.
+  bool IsControllerSpring(int e) const {
+    return std::max(springs[e][0], springs[e][1]) >= node_count();
+  }
 
   // Controllers (0, 1, ...) that no spring joins to a node: they move nothing.
   std::vector<int> UnjoinedControllers() const;

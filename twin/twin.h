@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "twin/linear_predictor.h"
+#include "twin/material.h"
 #include "twin/npz.h"
 #include "twin/spring_mass_system.h"
 
@@ -49,7 +50,8 @@ struct Twin {
   Eigen::Vector3d gravity{0, 0, -9.81};
   TrainedGround ground;
 
-  LinearPredictor linear;  // of the recordings that it was trained on; may be empty
+  std::optional<Material> material;  // of level 0, if its fit estimates it
+  LinearPredictor linear;            // of the recordings that it was trained on; may be empty
 
   std::vector<TrainedOn> trained_on;
   std::string options_json = "{}";  // the options it was trained with, a compact JSON object

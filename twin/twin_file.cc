@@ -101,19 +101,20 @@ std::string StoreMeta(const Twin& twin, const std::string& path) {
                           {"train_frames", recording.train_frames}});
   }
   const JsonFields options(twin.options_json, path + ": options");
-  const Json meta = {{"format", kFormat},
-                     {"version", kVersion},
-                     {"program", "physpring " PHYSPRING_VERSION},
-                     {"units", Units()},
-                     {"name", twin.name},
-                     {"levels", twin.levels.size()},
-                     {"points", twin.points},
-                     {"interior", twin.interior},
-                     {"controllers", twin.levels.empty() ? 0 : twin.levels[0].system.controllers},
-                     {"controller_velocity", twin.controller_velocity},
-                     {"recordings", recordings},
-                     {"seed", twin.seed},
-                     {"options", options.json()}};
+  Json meta = {{"format", kFormat},
+               {"version", kVersion},
+               {"program", "physpring " PHYSPRING_VERSION},
+               {"units", Units()},
+               {"name", twin.name},
+               {"levels", twin.levels.size()},
+               {"points", twin.points},
+               {"interior", twin.interior},
+               {"controllers", twin.levels.empty() ? 0 : twin.levels[0].system.controllers},
+               {"controller_velocity", twin.controller_velocity},
+               {"recordings", recordings},
+               {"seed", twin.seed},
+               {"options", options.json()}};
+  if (twin.material) meta["material"] = MaterialToJson(*twin.material);
   // a file name need not be UTF-8
   return meta.dump(1, ' ', false, Json::error_handler_t::replace);
 }
@@ -162,7 +163,8 @@ std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string&
     meta.Fail("version", fmt::format("holds {}, expected {}", version, kVersion));
   }
   meta.ExpectOnly({"format", "version", "program", "units", "name", "levels", "points", "interior",
-                   "controllers", "controller_velocity", "recordings", "seed", "options"});
+                   "controllers", "controller_velocity", "recordings", "seed", "options",
+                   "material"});
   twin.name = meta.Text("name");
   twin.points = meta.Count("points");
   twin.interior = meta.Count("interior");
@@ -172,6 +174,7 @@ std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string&
   }
   twin.seed = meta.Unsigned("seed");
   twin.options_json = meta.Object("options").Dump();
+  if (meta.Has("material")) twin.material = MaterialFromJson(meta.Object("material"));
   const int levels = meta.Count("levels");
   if (levels < 1) meta.Fail("levels", "holds 0, expected at least 1");
   return {static_cast<std::size_t>(levels), meta.Count("controllers")};

@@ -57,6 +57,23 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
   }
 }
 
+TEST_F(TwinFile, KeepsTheMaterial) {
+  Twin twin = MakeTwin();
+  EXPECT_FALSE(ReadTwin(path_).material) << "files of older programs have none";
+  twin.material = Material{{{0.01, 0.02, 7, {0.1, 0.05, 1.0 / 3}}},
+                           {1e-3, 0, 2e-3},
+                           {2, 1, 4},
+                           {{1, 2, 3}, {0.5, 0.4, 0.6}},
+                           {{3, 2, 1}, {1.5, 1.4, 1.6}}};
+  WriteTwin(twin, path_);
+  const Twin read = ReadTwin(path_);
+  ASSERT_TRUE(read.material);
+  EXPECT_EQ(MaterialToJson(*read.material), MaterialToJson(*twin.material));
+  EXPECT_EQ(read.material->classes[0].axial_stiffness.high, 1.0 / 3);
+  twin.material->drag.low = 3;
+  EXPECT_THROW(WriteTwin(twin, path_), Error) << "the value is below its lower bound";
+}
+
 TEST_F(TwinFile, KeepsTheLinearPredictor) {
   EXPECT_TRUE(ReadTwin(path_).linear.empty()) << "files of older programs have none";
   Twin twin = MakeTwin();

@@ -57,6 +57,14 @@ Parameters SpringFactors(const SpringMassSystem& base, const Recording& recordin
   return {base, options};
 }
 
+Parameters StiffnessFactors(const SpringMassSystem& base, const Recording& recording,
+                            const BodyKind& kind) {
+  ParameterOptions options = CommonOptions(base, recording, kind);
+  options.spring_stiffness = options.loss_times = true;
+  options.class_dashpots = false;
+  return {base, options};
+}
+
 GaussNewtonOptions SpringPrior(const Parameters& parameters) {
   GaussNewtonOptions options;
   options.conjugate_gradient_steps = 50;

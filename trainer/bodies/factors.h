@@ -26,6 +26,9 @@ Parameters CommonFactors(const SpringMassSystem& base, const Recording& recordin
 // SpringPrior gives the prior of them all.
 Parameters SpringFactors(const SpringMassSystem& base, const Recording& recording,
                          const BodyKind& kind = SpringNet());
+// StiffnessFactors adds every spring's own stiffness alone; its dashpot follows.
+Parameters StiffnessFactors(const SpringMassSystem& base, const Recording& recording,
+                            const BodyKind& kind = SpringNet());
 GaussNewtonOptions SpringPrior(const Parameters& parameters);
 constexpr int kMostSpringRecordings = 12;  // single springs are fitted to no more than these
 

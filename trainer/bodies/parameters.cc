@@ -3,40 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "trainer/bodies/contact_logits.h"
 #include "trainer/bodies/hanging_net.h"
 
 namespace physpring {
 namespace {
-
-// Classes of about equal rest length: a new class begins where the sorted lengths jump by `jump`;
-// where that gives many classes or a wide one (an irregular mesh), equally filled ones.
-std::vector<int> LengthClasses(const Eigen::VectorXd& length, double jump, int equal_classes) {
-  constexpr int kMostClasses = 10;
-  constexpr double kWidest = 1.2;  // the longest spring of a class, relative to its shortest
-  const int springs = static_cast<int>(length.size());
-  std::vector<int> sorted(springs), length_class(springs);
-  std::iota(sorted.begin(), sorted.end(), 0);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [&](int i, int j) { return length[i] < length[j]; });
-  int last = 0;
-  double shortest = 0, widest = 1;
-  for (int i = 0; i < springs; ++i) {
-    const bool first = i == 0 || length[sorted[i]] > jump * length[sorted[i - 1]];
-    if (first) shortest = length[sorted[i]];
-    if (first && i > 0) ++last;
-    widest = std::max(widest, length[sorted[i]] / shortest);
-    length_class[sorted[i]] = last;
-  }
-  if (last >= kMostClasses || widest > kWidest) {
-    for (int i = 0; i < springs; ++i) {
-      length_class[sorted[i]] = static_cast<int>(static_cast<long>(i) * equal_classes / springs);
-    }
-  }
-  return length_class;
-}
 
 std::vector<EffectValues> LastEffects(const SpringMassSystem& system, int count) {
   return {system.effects.end() - count, system.effects.end()};
@@ -49,12 +21,9 @@ Parameters::Parameters(const SpringMassSystem& base, const ParameterOptions& opt
       options_(options),
       effects_(LastEffects(base, options.free_effects), options.moment_unit),
       springs_(base.spring_count()),
-      length_class_(options.length_classes
-                        ? LengthClasses(base.rest_length, options.class_jump, options.equal_classes)
-                        : std::vector<int>(springs_, 0)),
-      classes_(options.contact ? kContact + kContactCount : kContact),
-      class_count_(1 + *std::max_element(length_class_.begin(), length_class_.end())),
-      modes_at_(classes_ + (options.class_dashpots ? 2 : 1) * class_count_),
+      classes_(options.length_classes ? ClassesOf(base, options.classes) : OneClass(base)),
+      first_class_(options.contact ? kContact + kContactCount : kContact),
+      modes_at_(first_class_ + (options.class_dashpots ? 2 : 1) * classes_.count),
       effects_at_(modes_at_ + mode_count()),
       size_(effects_at_ + effects_.size()) {
   if (options.stretch) stretch_ = size_++;
@@ -76,7 +45,7 @@ Parameters::Kind Parameters::kind(int i) const {
   if (within(dashpot_)) return Kind::kDashpot;
   if (within(rest_length_)) return Kind::kRestLength;
   if (i >= modes_at_ && i < effects_at_) return Kind::kMode;
-  if (i >= classes_ + class_count_ && i < modes_at_) return Kind::kClassDashpot;
+  if (i >= first_class_ + classes_.count && i < modes_at_) return Kind::kClassDashpot;
   return Kind::kGlobal;
 }
 
@@ -90,10 +59,6 @@ int Parameters::friction() const {
   return entry;
 }
 
-bool Parameters::IsControllerSpring(int e) const {
-  return std::max(base_.springs[e][0], base_.springs[e][1]) >= base_.node_count();
-}
-
 double Parameters::LengthInBase(int e) const {
   const auto [a, b] = base_.springs[e];
   return (base_.position.col(a) - base_.position.col(b)).norm();
@@ -105,7 +70,7 @@ double Parameters::StrainInBase(int e) const {
 
 std::vector<int> Parameters::WholeBodyEntries() const {
   std::vector<int> entries;
-  for (int i = 0; i < classes_; ++i) {
+  for (int i = 0; i < first_class_; ++i) {
     const bool dashpot = i == kDashpot || i == kControllerDashpot;
     if (!dashpot || options_.dashpots) entries.push_back(i);
   }
@@ -129,7 +94,7 @@ SpringMassSystem Parameters::Apply(const Eigen::VectorXd& values) const {
   Eigen::VectorXd field = Eigen::VectorXd::Zero(springs_);
   if (mode_count() > 0) field = options_.modes * values.segment(modes_at_, mode_count());
   for (int e = 0; e < springs_; ++e) {
-    const bool hand = IsControllerSpring(e);
+    const bool hand = base_.IsControllerSpring(e);
     const double own_stiffness = stiffness_ < 0 ? 0 : values[stiffness_ + e];
     const double own_dashpot = dashpot_ < 0 ? 0 : values[dashpot_ + e];
     const double stiffness = values[hand ? kControllerStiffness : kStiffness] +
@@ -169,7 +134,7 @@ Eigen::VectorXd Parameters::Adjoint(const Eigen::VectorXd& values, const SpringM
     bar.segment(modes_at_, mode_count()) = options_.modes.transpose() * stiffnesses_bar;
   }
   for (int e = 0; e < springs_; ++e) {
-    const bool hand = IsControllerSpring(e);
+    const bool hand = base_.IsControllerSpring(e);
     const double stiffness_bar = stiffnesses_bar[e], dashpot_bar = dashpots_bar[e];
     bar[hand ? kControllerStiffness : kStiffness] += stiffness_bar;
     bar[hand ? kControllerDashpot : kDashpot] += dashpot_bar;

@@ -9,16 +9,16 @@
 //   drag          = base exp(.)
 //   coefficients of the contact with the ground: contact_logits.h
 //   values of the base's last effects: effect_entries.h
-// Zero is the base system. Springs of about the same rest length are one class: on a regular mesh
-// the springs along, across and diagonal, which in a homogeneous body are alike. The `own` parts
-// are deviations of single springs, held small by the prior. The field is a sum of modes, smooth
-// along the body (spring_modes.h).
+// Zero is the base system. Springs of about the same rest length are one class (spring_classes.h).
+// The `own` parts are deviations of single springs, held small by the prior. The field is a sum of
+// modes, smooth along the body (spring_modes.h).
 #ifndef PHYSPRING_TRAINER_BODIES_PARAMETERS_H_
 #define PHYSPRING_TRAINER_BODIES_PARAMETERS_H_
 
 #include <vector>
 
 #include "trainer/bodies/effect_entries.h"
+#include "trainer/bodies/spring_classes.h"
 #include "twin/simulator.h"
 #include "twin/spring_mass_system.h"
 
@@ -36,8 +36,7 @@ struct ParameterOptions {
   bool dashpots = true;        // else none moves, and the entries of dashpots do nothing
   bool stretch = false;        // a factor for the strains of the base in its own positions
   bool loss_times = false;     // dashpots follow the stiffnesses; their entries are of loss times
-  double class_jump = 1.03;    // a class ends where the sorted lengths jump by this factor
-  int equal_classes = 6;       // so many, equally filled, where that gives many (irregular meshes)
+  SpringClassOptions classes = {};
   // springs x modes: what the field of stiffness is made of; empty: there is none
   Eigen::MatrixXd modes = {};
 };
@@ -57,6 +56,9 @@ class Parameters {
   std::vector<int> WholeBodyEntries() const;
   // The entries of effects' values along the body.
   std::vector<int> AlongBodyEntries() const;
+  // The first entry of the classes' stiffnesses.
+  int first_class() const { return first_class_; }
+  const SpringClasses& classes() const { return classes_; }
   // The entry of the ground's friction; -1: none.
   int friction() const;
   // The first entry of the effects' values, and how many there are.
@@ -70,23 +72,22 @@ class Parameters {
                           const SystemGradient& gradient) const;
 
  private:
-  bool IsControllerSpring(int e) const;
   double LengthInBase(int e) const;
   double StrainInBase(int e) const;
-  int ClassStiffness(int e) const { return classes_ + length_class_[e]; }
+  int ClassStiffness(int e) const { return first_class_ + classes_.of_spring[e]; }
   int mode_count() const { return static_cast<int>(options_.modes.cols()); }
   // -1: none
   int ClassDashpot(int e) const {
-    return options_.class_dashpots ? classes_ + class_count_ + length_class_[e] : -1;
+    return options_.class_dashpots ? ClassStiffness(e) + classes_.count : -1;
   }
 
   SpringMassSystem base_;
   ParameterOptions options_;
   EffectEntries effects_;  // those that are free
   int springs_;
-  std::vector<int> length_class_;                         // of each spring
-  int classes_;                                           // offset of the classes' stiffness ...
-  int class_count_;                                       // ... and dashpot, if any, after it
+  SpringClasses classes_;
+  int first_class_;                                       // offset of the classes' stiffness and,
+                                                          // after it, of their dashpot, if any
   int modes_at_;                                          // offset of the field's modes
   int effects_at_;                                        // offset of the effects' values
   int stretch_ = -1;                                      // offset of the stretch; -1: none

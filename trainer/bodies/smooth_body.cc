@@ -1,50 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/smooth_body.h"
 
+#include <cmath>
+
 #include "trainer/bodies/factors.h"
 #include "trainer/bodies/spring_modes.h"
 #include "trainer/solvers/levenberg_marquardt.h"
-#include "twin/stability.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kModes = 8;
+constexpr int kModes = 14;
 // Of irregular meshes. Springs that are superfluous begin at some length: within one class they
 // could not be told from true ones.
 constexpr int kEqualClasses = 30;
 constexpr double kClassJump = 1.01;  // true and superfluous springs may differ in length by 1.5 %
-constexpr double kMode = 0.5;        // the prior's standard deviation
+// The prior's standard deviations: of a mode, and of the difference between classes that are next
+// to each other in an irregular mesh.
+constexpr double kMode = 0.5, kNeighbouringClasses = 0.5;
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
-                               const BodyKind& kind) {
+                               const BodyKind& kind, bool hands_apart) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
   options.class_dashpots = false;
-  options.class_jump = kClassJump;
-  options.equal_classes = kEqualClasses;
+  options.classes = {kClassJump, kEqualClasses, hands_apart};
   options.modes = SpringModes(start, kModes);
   return options;
 }
 
+// The fastest mode's frequency times the sub-step, at most; 2 would leave no room for dashpots.
+constexpr double kStiffest = 1.8;
+
 }  // namespace
 
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
-                       const BodyKind& kind, double most_rate)
-    : factors_(start, SmoothOptions(start, recording, kind)), most_rate_(most_rate) {}
+                       const BodyKind& kind, const Options& options)
+    : factors_(start, SmoothOptions(start, recording, kind, options.hands_apart)),
+      options_(options) {}
 
-Eigen::VectorXd SmoothBody::Precision() const {
-  Eigen::VectorXd precision = Eigen::VectorXd::Constant(size(), kLevenbergMarquardtPrecision);
+Eigen::MatrixXd SmoothBody::Precision() const {
+  Eigen::MatrixXd precision =
+      kLevenbergMarquardtPrecision * Eigen::MatrixXd::Identity(size(), size());
   for (int i = 0; i < size(); ++i) {
-    if (factors_.kind(i) == Parameters::Kind::kMode) precision[i] = 1 / (kMode * kMode);
+    if (factors_.kind(i) == Parameters::Kind::kMode) precision(i, i) = 1 / (kMode * kMode);
+  }
+  const double alike = 1 / (kNeighbouringClasses * kNeighbouringClasses);
+  const int first = factors_.first_class(), end = first + factors_.classes().lengths;
+  for (int i = first; factors_.classes().irregular && i + 1 < end; ++i) {
+    precision(i, i) += alike;
+    precision(i + 1, i + 1) += alike;
+    precision(i, i + 1) -= alike;
+    precision(i + 1, i) -= alike;
   }
   return precision;
 }
 
 SpringMassSystem SmoothBody::Apply(const Eigen::VectorXd& x) const {
   SpringMassSystem system = factors_.Apply(x);
-  LimitDashpots(1 / most_rate_ / kStepSafety, &system);
+  if (LimitDashpots(timestep(), &system)) return system;
+  const double root = timestep() * ComputeStabilityBound(system).omega_max;
+  system.stiffness *= std::pow(kStiffest / root, 2);
+  LimitDashpots(timestep(), &system);
   return system;
+}
+
+bool SmoothBody::IsLimited(const Eigen::VectorXd& x) const {
+  return ComputeStabilityBound(factors_.Apply(x)).timestep < timestep();
 }
 
 }  // namespace physpring

@@ -11,27 +11,36 @@
 
 #include "trainer/bodies/body.h"
 #include "trainer/bodies/parameters.h"
+#include "twin/stability.h"
 
 namespace physpring {
 
 class SmoothBody {
  public:
-  // `start`: the system at x = 0, whose springs have one loss time. `most_rate`: the most sub-steps
-  // a second that a system may need.
+  struct Options {
+    double most_rate;          // the most sub-steps a second that a system may need
+    bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
+  };
+
+  // `start`: the system at x = 0, whose springs have one loss time.
   SmoothBody(const SpringMassSystem& start, const Recording& recording, const BodyKind& kind,
-             double most_rate);
+             const Options& options);
 
   int size() const { return factors_.size(); }
-  double most_rate() const { return most_rate_; }
-  Eigen::VectorXd Precision() const;  // the prior's, of each entry
+  const Parameters& factors() const { return factors_; }
+  double most_rate() const { return options_.most_rate; }
+  Eigen::MatrixXd Precision() const;  // the prior's
 
-  // Where stiffness leaves too little room for them, the dashpots are lowered by one factor: a fit
-  // that could not go there would be stuck at the most sub-steps.
+  // Where the system would need more sub-steps than that, its dashpots are lowered by one factor,
+  // and where that is not enough, its stiffnesses: a fit that could not go there would be stuck.
   SpringMassSystem Apply(const Eigen::VectorXd& x) const;
+  bool IsLimited(const Eigen::VectorXd& x) const;  // whether Apply lowers anything
 
  private:
+  double timestep() const { return 1 / (options_.most_rate * kStepSafety); }  // s, the shortest
+
   Parameters factors_;
-  double most_rate_;
+  Options options_;
 };
 
 }  // namespace physpring

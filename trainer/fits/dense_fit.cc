@@ -7,12 +7,14 @@
 #include "trainer/data/held_back.h"
 #include "trainer/fits/body_choice.h"
 #include "trainer/fits/chain_fit.h"
-#include "trainer/fits/factor_fit.h"
+#include "trainer/fits/material_estimate.h"
 #include "trainer/fits/net_fit.h"
 #include "twin/stability.h"
 
 namespace physpring {
 namespace {
+
+constexpr int kMostMaterialRecordings = 4;  // tell the material
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.45;
@@ -44,7 +46,10 @@ Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work
     model = FitChain(model, data, options, work.Part("chain", kChosen, 1));
     return TwinOf(model.System(first), body, data, options);
   }
-  return TwinOf(FitNet(choice, data, options, work.Part("net", kChosen, 1)), body, data, options);
+  const SpringMassSystem net = FitNet(choice, data, options, work.Part("net", kChosen, 1));
+  Twin twin = TwinOf(net, body, data, options);
+  twin.material = EstimateMaterial(net, body, FitEpisodes(data, kMostMaterialRecordings), options);
+  return twin;
 }
 
 }  // namespace physpring

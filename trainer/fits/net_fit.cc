@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "trainer/data/held_back.h"
@@ -19,15 +20,28 @@ constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more
 constexpr GainSchedule kAllGains{0, 6};
 // The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
 constexpr double kSlowRate = 2500;
-// With a body whose residuals correlate less, no faster one is tried: one that is too slow may
-// leave little more than noise on the fit frames, and far more on another motion.
+// With a smooth body whose residuals correlate less, nothing else is tried. One that is too slow
+// may leave little more than noise on the fit frames, and far more on another motion.
 constexpr double kSurelyNoise = 0.02;
 // A body of a higher rate must lower the part of the error that is no noise to this share.
 constexpr double kWorthItsRate = 0.6;
-constexpr double kWorthIt = 0.95;  // single springs must lower the error to this share
+constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kSlow = 0.1, kSmooth = 0.3, kTriedSmooth = 0.35, kTried = 0.6;
+constexpr double kSlow = 0.1, kSmooth = 0.3, kTriedSmooth = 0.35, kTriedStiffnesses = 0.45,
+                 kTried = 0.6;
+
+enum class Kind { kSmooth, kStiffnesses, kSprings };
+
+// A smooth body, and how much of its error is no noise.
+struct SmoothTrial {
+  SmoothlyFitted fit;
+  double correlation;  // residual_correlation.h
+  double wrong_by;     // the part of the error that is no noise, m
+  bool limited;        // it would be stiffer or lossier if it might take more sub-steps
+
+  bool HasArrived() const { return correlation < kSurelyNoise && !limited; }
+};
 
 class NetFit {
  public:
@@ -44,19 +58,9 @@ class NetFit {
 
  private:
   const ChosenBody& model() const { return choice_.model; }
-  double Correlation(const SmoothlyFitted& smooth) const {
-    return ResidualCorrelation(smooth.System(), episodes_, rollout_);
-  }
-  bool HasArrived(const SmoothlyFitted& smooth) const {
-    return Correlation(smooth) < kNoiseCorrelation;
-  }
-  // The part of the error that is no noise, m.
-  double WrongBy(const SmoothlyFitted& smooth) const {
-    return std::sqrt(std::max(0.0, Correlation(smooth))) *
-           GeometricTrackError(smooth.System(), episodes_, FrameUse::kFit, rollout_);
-  }
-  SmoothlyFitted FitSmooth() const;
-  bool PredictBetter(const SmoothlyFitted& smooth) const;
+  SmoothTrial TrySmooth(const SmoothBody::Options& body, const Work& work) const;
+  SmoothTrial FitSmooth() const;
+  Kind BestPredictor(const SmoothTrial& smooth) const;
   SpringMassSystem FitAllSprings(double from) const;
 
   const BodyChoice& choice_;
@@ -72,40 +76,92 @@ SpringMassSystem FitSpringsOf(const ChosenBody& model, const FitData& data,
                               const TrainOptions& options, const Eigen::VectorXd& x,
                               const Work& work) {
   const Recording& first = data.recordings.at(0);
-  return SpringFactors(model.System(first), first, *model.body.kind)
-      .Apply(FitSprings(model, data, options, x, work));
+  const Parameters springs = SpringFactors(model.System(first), first, *model.body.kind);
+  return springs.Apply(FitSprings(springs, model.body, data, options, x, work));
+}
+
+// The springs' own stiffnesses, fitted to `data` from a smooth body on.
+SpringMassSystem FitStiffnesses(const SpringMassSystem& smooth, const Body& body,
+                                const FitData& data, const TrainOptions& options,
+                                const Work& work) {
+  const Parameters springs = StiffnessFactors(smooth, data.recordings.at(0), *body.kind);
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(springs.size());
+  return springs.Apply(FitSprings(springs, body, data, options, start, work));
 }
 
 Eigen::VectorXd NoOwnValues(const ChosenBody& model, const Recording& first) {
   return Eigen::VectorXd::Zero(SpringFactors(model.System(first), first, *model.body.kind).size());
 }
 
-// The smooth body; of two that have not arrived, the one whose sub-steps are long, unless the other
-// is much better.
-SmoothlyFitted NetFit::FitSmooth() const {
-  const double most = MostRate(options_, data_.recordings[0]), least = std::min(kSlowRate, most);
-  const SmoothlyFitted slow =
-      FitSmoothBody(model(), episodes_, options_, least, work_.Part("smooth body", 0, kSlow));
-  if (least == most || Correlation(slow) < kSurelyNoise) return slow;
-  const SmoothlyFitted fast = FitSmoothBody(model(), episodes_, options_, most,
-                                            work_.Part("smooth body, stiff", kSlow, kSmooth));
-  return WrongBy(fast) < kWorthItsRate * WrongBy(slow) ? fast : slow;
+SmoothTrial NetFit::TrySmooth(const SmoothBody::Options& body, const Work& work) const {
+  const SmoothlyFitted fit = FitSmoothBody(model(), episodes_, options_, body, work);
+  const SpringMassSystem system = fit.System();
+  const double correlation = ResidualCorrelation(system, episodes_, rollout_);
+  const double error = GeometricTrackError(system, episodes_, FrameUse::kFit, rollout_);
+  return {fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
+          fit.body.IsLimited(fit.x)};
 }
 
-// Whether single springs predict what is held back better than the smooth body.
-bool NetFit::PredictBetter(const SmoothlyFitted& smooth) const {
+// The first smooth body that has arrived, or the best of them. Those of long sub-steps come first,
+// and of each those whose hands follow the law of the object. They differ in which side valleys
+// their fits end in.
+SmoothTrial NetFit::FitSmooth() const {
+  const double most = MostRate(options_, data_.recordings[0]), least = std::min(kSlowRate, most);
+  const bool hands = data_.recordings[0].controller_count() > 0;
+  std::optional<SmoothTrial> best;
+  const auto is_better = [&](const SmoothTrial& trial) {
+    if (!best || trial.HasArrived()) return true;
+    const double worth =
+        trial.fit.body.most_rate() > best->fit.body.most_rate() ? kWorthItsRate : 1;
+    return trial.wrong_by < worth * best->wrong_by;
+  };
+  double from = 0;
+  const auto take = [&](double rate, bool apart, const char* name, double to) {
+    const SmoothTrial trial = TrySmooth({rate, apart}, work_.Part(name, from, to));
+    from = to;
+    if (is_better(trial)) best = trial;
+    return trial;
+  };
+  const bool limited = take(least, false, "smooth body", 0.5 * kSlow).limited;
+  if (hands && !limited && !best->HasArrived())
+    take(least, true, "smooth body, hands apart", kSlow);
+  if (most > least && !best->HasArrived()) {
+    take(most, false, "smooth body, stiff", 0.5 * (kSlow + kSmooth));
+    if (hands && !best->HasArrived()) {
+      take(most, true, "smooth body, stiff, hands apart", kSmooth);
+    }
+  }
+  return *best;
+}
+
+// What predicts best what is held back; of bodies that predict about as well, the one of the fewest
+// numbers.
+Kind NetFit::BestPredictor(const SmoothTrial& smooth) const {
   const HeldBackMotion held_back = HoldBackMotion(data_, kMostCommonRecordings);
   const std::vector<Episode> judged = held_back.JudgedEpisodes();
-  const auto error = [&](const SpringMassSystem& system) {
-    return GeometricTrackError(system, judged, FrameUse::kHeld, rollout_);
-  };
   const std::vector<Episode> fit = FitEpisodes(held_back.fit, kMostCommonRecordings);
-  const SmoothlyFitted tried_smooth = FitOn(
-      smooth, model(), fit, options_, work_.Part("trial, smooth body", kSmooth, kTriedSmooth));
-  const SpringMassSystem tried_springs = FitSpringsOf(
-      model(), held_back.fit, options_, NoOwnValues(model(), held_back.fit.recordings.at(0)),
-      work_.Part("trial, single springs", kTriedSmooth, kTried));
-  return error(tried_springs) < kWorthIt * error(tried_smooth.System());
+  Kind best = Kind::kSmooth;
+  double least = kInfinity;
+  const auto judge = [&](Kind kind, const SpringMassSystem& system) {
+    const double error = GeometricTrackError(system, judged, FrameUse::kHeld, rollout_);
+    if (error >= kWorthIt * least) return;
+    best = kind;
+    least = error;
+  };
+  const SpringMassSystem tried = FitOn(smooth.fit, model(), fit, options_,
+                                       work_.Part("trial, smooth body", kSmooth, kTriedSmooth))
+                                     .System();
+  judge(Kind::kSmooth, tried);
+  judge(Kind::kStiffnesses,
+        FitStiffnesses(tried, model().body, held_back.fit, options_,
+                       work_.Part("trial, stiffnesses", kTriedSmooth, kTriedStiffnesses)));
+  if (smooth.correlation >= kNoiseCorrelation) {
+    judge(Kind::kSprings,
+          FitSpringsOf(model(), held_back.fit, options_,
+                       NoOwnValues(model(), held_back.fit.recordings.at(0)),
+                       work_.Part("trial, single springs", kTriedStiffnesses, kTried)));
+  }
+  return best;
 }
 
 // Single springs, fitted to all data in the work from `from` on.
@@ -128,9 +184,19 @@ SpringMassSystem NetFit::Run() const {
   const bool springs_asked =
       options_.epochs > 0 || options_.optimizer != TrainOptions::Optimizer::kAutomatic;
   if (springs_asked && !smooth_only) return FitAllSprings(0);
-  const SmoothlyFitted smooth = FitSmooth();
-  if (smooth_only || HasArrived(smooth) || !PredictBetter(smooth)) return smooth.System();
-  return FitAllSprings(kTried);
+  const SmoothTrial smooth = FitSmooth();
+  const SpringMassSystem system = smooth.fit.System();
+  if (smooth_only || smooth.correlation < kSurelyNoise) return system;
+  switch (BestPredictor(smooth)) {
+    case Kind::kStiffnesses:
+      return FitStiffnesses(system, model().body, data_, options_,
+                            work_.Part("stiffnesses", kTried, 1));
+    case Kind::kSprings:
+      return FitAllSprings(kTried);
+    case Kind::kSmooth:
+      break;
+  }
+  return system;
 }
 
 }  // namespace

@@ -9,16 +9,16 @@ namespace physpring {
 namespace {
 
 // The most steps with each gain, and when they end: a gain above 0 only shows the way.
-constexpr int kGuidedSteps = 8, kFreeSteps = 24;
+constexpr int kGuidedSteps = 40, kFreeSteps = 80;
 constexpr double kFollowedTolerance = 2e-3, kFreeTolerance = 1e-5;
 constexpr int kUpdates = 4;              // of the Jacobian in a step
 constexpr double kSmoothDamping = 1e-2;  // the damping with which each gain begins
 
 struct SmoothState {
   Eigen::VectorXd x;
-  int gain = 0;       // an index of kObserverGains
-  int iteration = 0;  // steps made with this gain
-  double damping = kSmoothDamping;
+  int gain = 0;                     // an index of kObserverGains
+  int iteration = 0;                // steps made with this gain
+  double damping = kSmoothDamping;  // of the next step
 
   template <class Visitor>
   void Visit(Visitor&& visit) {
@@ -78,6 +78,7 @@ StepReport SmoothFit::Step(SmoothState* state) const {
   kept.keep_substeps = true;
   MotionProblem nearby(MapOf(body_), episodes_, kept);
   LevenbergMarquardtState fit{state->x, state->damping};
+  const bool damped = state->damping > kSmoothDamping;
   fit.converged = true;
   if (nearby.FixSubsteps(fit.x)) {
     LevenbergMarquardtOptions levenberg = chosen_.body.kind->FactorOptions(recording_);
@@ -95,7 +96,9 @@ StepReport SmoothFit::Step(SmoothState* state) const {
                     fmt::format("smooth body, {}: {:.3f} mm",
                                 gain > 0 ? fmt::format("observer's gain {}", gain) : "free motion",
                                 PointMillimetres(fit.mean_square))};
-  if (state->iteration < most_steps && !fit.converged) return report;
+  // a short step gains little wherever it is made: one that is not so damped has to confirm it
+  if (fit.converged) state->damping = kSmoothDamping;
+  if (state->iteration < most_steps && (!fit.converged || damped)) return report;
   state->iteration = 0;
   state->damping = kSmoothDamping;
   report.done = ++state->gain > kLastGain;
@@ -114,10 +117,11 @@ SmoothlyFitted Fit(const SmoothlyFitted& start, int first_gain, const ChosenBody
 }  // namespace
 
 SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                             const TrainOptions& options, double most_rate, const Work& work) {
+                             const TrainOptions& options, const SmoothBody::Options& body,
+                             const Work& work) {
   const Recording recording = OnlyFitFrames(episodes.at(0));
-  const SmoothBody body(StartOf(chosen, recording), recording, *chosen.body.kind, most_rate);
-  return Fit({body, Eigen::VectorXd::Zero(body.size())}, 0, chosen, episodes, options, work);
+  const SmoothBody smooth(StartOf(chosen, recording), recording, *chosen.body.kind, body);
+  return Fit({smooth, Eigen::VectorXd::Zero(smooth.size())}, 0, chosen, episodes, options, work);
 }
 
 SmoothlyFitted FitOn(const SmoothlyFitted& start, const ChosenBody& chosen,

@@ -21,10 +21,11 @@ struct SmoothlyFitted {
   SpringMassSystem System() const { return body.Apply(x); }
 };
 
-// The numbers that fit the episodes best, of bodies that need at most so many sub-steps a second.
+// The numbers that fit the episodes best.
 // The contact with the ground starts as chosen, all else as soft as the choice began.
 SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                             const TrainOptions& options, double most_rate, const Work& work);
+                             const TrainOptions& options, const SmoothBody::Options& body,
+                             const Work& work);
 
 // The same for other episodes of the same object, from those numbers on, by free motions alone.
 SmoothlyFitted FitOn(const SmoothlyFitted& start, const ChosenBody& chosen,

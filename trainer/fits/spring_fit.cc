@@ -64,12 +64,12 @@ int AdamSteps(const TrainOptions& options) {
 // What is fitted, and to what.
 class SpringFit {
  public:
-  SpringFit(const ChosenBody& model, const FitData& data, const TrainOptions& options)
+  SpringFit(const Parameters& parameters, const Body& body, const FitData& data,
+            const TrainOptions& options)
       : options_(options),
-        parameters_(
-            SpringFactors(model.System(data.recordings[0]), data.recordings[0], *model.body.kind)),
+        parameters_(parameters),
         prior_(SpringPrior(parameters_)),
-        follow_(FollowOptions(data.recordings[0], model.body, options)),
+        follow_(FollowOptions(data.recordings[0], body, options)),
         episodes_(FitEpisodes(data, kMostSpringRecordings)) {}
 
   StepReport StepGaussNewton(GaussNewtonFit* fit) const;
@@ -79,7 +79,7 @@ class SpringFit {
   double PartOfGaussNewton(const GaussNewtonFit& fit) const;
 
   const TrainOptions& options_;
-  Parameters parameters_;
+  const Parameters& parameters_;
   GaussNewtonOptions prior_;
   MotionProblem::Options follow_;
   std::vector<Episode> episodes_;
@@ -177,10 +177,10 @@ int GaussNewtonSteps(const TrainOptions& options) {
   return 0;
 }
 
-Eigen::VectorXd FitSprings(const ChosenBody& model, const FitData& data,
+Eigen::VectorXd FitSprings(const Parameters& parameters, const Body& body, const FitData& data,
                            const TrainOptions& options, const Eigen::VectorXd& x,
                            const Work& work) {
-  const SpringFit springs(model, data, options);
+  const SpringFit springs(parameters, body, data, options);
   GaussNewtonFit fit{x};
   // where Gauss-Newton gains little early on, the residuals are too rough for it
   bool rough = true;

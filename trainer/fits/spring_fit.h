@@ -14,8 +14,8 @@ namespace physpring {
 // How many steps Gauss-Newton makes with the last gain, at most; 0 if it is not asked for.
 int GaussNewtonSteps(const TrainOptions& options);
 
-// The springs' own values, fitted from `x` on.
-Eigen::VectorXd FitSprings(const ChosenBody& model, const FitData& data,
+// The numbers of `parameters`, among them the springs' own values, fitted from `x` on.
+Eigen::VectorXd FitSprings(const Parameters& parameters, const Body& body, const FitData& data,
                            const TrainOptions& options, const Eigen::VectorXd& x, const Work& work);
 
 }  // namespace physpring

@@ -50,21 +50,20 @@ class Objective {
       : residuals_(residuals),
         options_(options),
         variance_(variance),
-        precision_(options.precisions.size() > 0
-                       ? options.precisions
-                       : Eigen::VectorXd::Constant(size, options.precision)) {}
+        precision_(
+            options.precisions.size() > 0
+                ? options.precisions
+                : Eigen::MatrixXd(options.precision * Eigen::MatrixXd::Identity(size, size))) {}
 
   double At(const Eigen::VectorXd& r, const Eigen::VectorXd& x) const {
-    return r.squaredNorm() / variance_ + precision_.dot(x.cwiseAbs2());
+    return r.squaredNorm() / variance_ + x.dot(precision_ * x);
   }
 
   // Nothing where no trial of up to `attempts` pairs, with more and more damping, is better.
   std::optional<Trial> Try(const Eigen::VectorXd& x, const Eigen::VectorXd& r,
                            const Eigen::MatrixXd& jacobian, double damping, int attempts) const {
-    Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance_;
-    normal.diagonal() += precision_;
-    const Eigen::VectorXd gradient =
-        jacobian.transpose() * r / variance_ + precision_.cwiseProduct(x);
+    const Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance_ + precision_;
+    const Eigen::VectorXd gradient = jacobian.transpose() * r / variance_ + precision_ * x;
     for (int attempt = 0; attempt < attempts; ++attempt, damping *= 30) {
       std::optional<Trial> better = TryPair(x, normal, gradient, damping, At(r, x));
       if (better) return better;
@@ -101,7 +100,7 @@ class Objective {
   const ResidualsFunction& residuals_;
   const LevenbergMarquardtOptions& options_;
   double variance_;
-  Eigen::VectorXd precision_;
+  Eigen::MatrixXd precision_;
 };
 
 }  // namespace

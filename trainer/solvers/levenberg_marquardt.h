@@ -41,7 +41,7 @@ inline constexpr double kLevenbergMarquardtPrecision = 0.25;
 struct LevenbergMarquardtOptions {
   double difference = 1e-3;                         // step of the forward differences
   double precision = kLevenbergMarquardtPrecision;  // the prior's of every entry ...
-  Eigen::VectorXd precisions = {};                  // ... or of each, if not empty
+  Eigen::MatrixXd precisions = {};                  // ... or of all, a matrix, if not empty
   double longest_step = 1;                          // no entry of x moves further in one step
   double tolerance = 2e-3;  // converged when a step lowers the objective by less than this share
   // So many times the step goes on with the Jacobian of its start, updated by Broyden's rule, while

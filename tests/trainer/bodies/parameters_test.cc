@@ -68,7 +68,7 @@ SpringMassSystem Chain(const std::vector<double>& lengths) {
 ParameterOptions Smooth(bool own) {
   ParameterOptions options{own, own, own, true};
   options.loss_times = true;
-  options.class_jump = 1.2;
+  options.classes.jump = 1.2;
   const SpringMassSystem base = RandomSystem(10, 2, 3);
   Random random(11);
   options.modes.resize(base.spring_count(), 2);

@@ -111,8 +111,8 @@ TEST(FitDense, FindsTheMaterialOfASmoothBody) {
   EXPECT_NEAR(found.drag, truth.drag, 0.02 * truth.drag);
 }
 
-void AddNoise(Recording* recording) {
-  std::mt19937 random(5);
+void AddNoise(Recording* recording, unsigned seed = 5) {
+  std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 5e-4);
   for (std::size_t frame = 1; frame < recording->points.size(); ++frame) {
     for (double& value : recording->points[frame].reshaped()) value += noise(random);
@@ -132,6 +132,47 @@ TEST(FitDense, SmoothBodyStaysWhereItLeavesNoise) {
   ExpectSameTwin(fit(TrainOptions::Method::kFull, &full),
                  fit(TrainOptions::Method::kSmooth, &smooth));
   EXPECT_EQ(full.parts.count("trial, single springs"), 0u);
+}
+
+bool Holds(const Estimate& estimate, double truth) {
+  return estimate.low <= truth && truth <= estimate.high;
+}
+
+// The intervals hold the truth and are of some use; four times the noise makes them wider.
+TEST(FitDense, SaysWhatTheMaterialIs) {
+  SmoothRope rope = MakeSmoothRope();
+  AddNoise(&rope.data.recordings[0]);
+  const auto material = [&] {
+    return *Fit(rope.data, OptionsOfSmoothRope(TrainOptions::Method::kSmooth)).material;
+  };
+  const Material found = material();
+  ASSERT_FALSE(found.classes.empty());
+  const double axial_stiffness = rope.truth.stiffness[0] * rope.truth.rest_length[0];
+  for (const auto& one : found.classes) {
+    EXPECT_TRUE(Holds(one.axial_stiffness, axial_stiffness)) << one.shortest;
+  }
+  EXPECT_TRUE(Holds(found.loss_time, 2e-3));
+  EXPECT_TRUE(Holds(found.drag, rope.truth.drag));
+  EXPECT_TRUE(found.loss_time.IsTold());
+  for (int i = 0; i < 15; ++i) AddNoise(&rope.data.recordings[0], i);
+  EXPECT_GT(material().loss_time.high / material().loss_time.value,
+            found.loss_time.high / found.loss_time.value);
+}
+
+// A rope that nothing moves does not tell how lossy it is.
+TEST(FitDense, SaysWhatARecordingDoesNotTell) {
+  SmoothRope rope = MakeSmoothRope();
+  Recording& recording = rope.data.recordings[0];
+  recording.gravity.setZero();
+  for (std::size_t frame = 1; frame < recording.points.size(); ++frame) {
+    recording.points[frame] = recording.points[0];
+    recording.controllers[frame] = recording.controllers[0];
+  }
+  AddNoise(&recording);
+  const Material found =
+      *Fit(rope.data, OptionsOfSmoothRope(TrainOptions::Method::kSmooth)).material;
+  EXPECT_FALSE(found.loss_time.IsTold());
+  EXPECT_FALSE(found.drag.IsTold());
 }
 
 // Springs that differ from each other without any order are no smooth body.

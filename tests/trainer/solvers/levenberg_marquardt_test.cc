@@ -108,10 +108,20 @@ TEST(LevenbergMarquardt, PriorCountsAgainstTheMisfitAtTheStart) {
 
 TEST(LevenbergMarquardt, EachEntryMayHaveAPriorOfItsOwn) {
   LevenbergMarquardtOptions options{.longest_step = 10};
-  options.precisions = Eigen::Vector2d(0.75, 0.25);
+  options.precisions = Eigen::Vector2d(0.75, 0.25).asDiagonal();
   const LevenbergMarquardtState state = LinearStep(options);
   EXPECT_NEAR(state.x[0], 0.5, 1e-5);
   EXPECT_NEAR(state.x[1], 1, 1e-5);
+}
+
+// With a precision of (x_0 - x_1)^2 as well, (x - 2) / 4 + P x = 0 has the solution below.
+TEST(LevenbergMarquardt, PriorMayTieEntriesToEachOther) {
+  LevenbergMarquardtOptions options{.longest_step = 10};
+  options.precisions = Eigen::Vector2d(0.75, 0.25).asDiagonal();
+  options.precisions += (Eigen::Matrix2d() << 1, -1, -1, 1).finished();
+  const LevenbergMarquardtState state = LinearStep(options);
+  const Eigen::Matrix2d normal = 0.25 * Eigen::Matrix2d::Identity() + options.precisions;
+  EXPECT_LT((state.x - normal.inverse() * Eigen::Vector2d(0.5, 0.5)).norm(), 1e-5);
 }
 
 TEST(LevenbergMarquardt, GoesOnWithAnUpdatedJacobianForTwoEvaluationsEach) {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/bodies/spring_classes.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/simulation.h"
+
+namespace physpring {
+namespace {
+
+// Springs of these lengths between nodes, and from two controllers to nodes.
+SpringMassSystem Star(const std::vector<double>& lengths,
+                      const std::vector<std::pair<int, double>>& hands) {
+  const int nodes = static_cast<int>(lengths.size()) + 1;
+  SpringMassSystem system = Particles(Points::Zero(3, nodes + 2), 0.01);
+  system.controllers = 2;
+  system.mass.conservativeResize(nodes);
+  system.contact_radius.conservativeResize(nodes);
+  for (int i = 1; i < nodes; ++i) AddSpring(0, i, 10, lengths[i - 1], 0.1, &system);
+  int end = 0;
+  for (const auto& [controller, length] : hands) {
+    AddSpring(end++, nodes + controller, 10, length, 0.1, &system);
+  }
+  return system;
+}
+
+TEST(SpringClasses, EndWhereLengthsJump) {
+  const SpringClasses classes = ClassesOf(Star({0.02, 0.01, 0.0101, 0.03}, {}), {1.05, 6, true});
+  EXPECT_EQ(classes.of_spring, (std::vector<int>{1, 0, 0, 2}));
+  EXPECT_EQ(classes.count, 3);
+  EXPECT_EQ(classes.lengths, 3);
+  EXPECT_FALSE(classes.irregular);
+}
+
+TEST(SpringClasses, AreEquallyFilledWhereLengthsDoNotJump) {
+  std::vector<double> lengths(12);
+  for (int i = 0; i < 12; ++i) lengths[i] = 0.01 * std::pow(1.04, i);
+  const SpringClasses classes = ClassesOf(Star(lengths, {}), {1.05, 4, true});
+  EXPECT_TRUE(classes.irregular);
+  EXPECT_EQ(classes.of_spring, (std::vector<int>{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}));
+}
+
+TEST(SpringClasses, HandsAreClassedByHowNearTheyAre) {
+  const SpringMassSystem star =
+      Star({0.01, 0.02, 0.02}, {{0, 0.03}, {1, 0.05}, {0, 0.01}, {1, 0.04}});
+  const SpringClasses apart = ClassesOf(star, {1.05, 6, true});
+  EXPECT_EQ(apart.of_spring, (std::vector<int>{0, 1, 1, 3, 3, 2, 2}));
+  EXPECT_EQ(apart.lengths, 2);
+  EXPECT_EQ(apart.count, 4);
+  const SpringClasses together = ClassesOf(star, {1.05, 6, false});
+  EXPECT_EQ(together.of_spring, (std::vector<int>{0, 1, 1, 2, 4, 0, 3}));
+  EXPECT_EQ(together.lengths, together.count);
+}
+
+}  // namespace
+}  // namespace physpring

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Springs that are alike: those of about the same rest length, as the springs along, across and
+// diagonal of a regular mesh, and the springs of controllers.
+#ifndef PHYSPRING_TRAINER_BODIES_SPRING_CLASSES_H_
+#define PHYSPRING_TRAINER_BODIES_SPRING_CLASSES_H_
+
+#include <vector>
+
+#include "twin/spring_mass_system.h"
+
+namespace physpring {
+
+struct SpringClassOptions {
+  double jump = 1.03;  // a class ends where the sorted lengths jump by this factor
+  int equal = 6;       // so many, equally filled, where that gives many or wide ones
+  // Springs of controllers have classes apart from those of length: the nearest springs of all
+  // controllers are one, the second nearest ones another, and so on.
+  bool hands_apart = false;
+};
+
+struct SpringClasses {
+  std::vector<int> of_spring;  // 0 <= class < count
+  int count = 0;
+  int lengths = 0;         // classes below this one are of length, in its order
+  bool irregular = false;  // lengths fall into no classes: equally filled ones cut their range
+};
+
+SpringClasses ClassesOf(const SpringMassSystem& system, const SpringClassOptions& options);
+
+// All springs in one class.
+SpringClasses OneClass(const SpringMassSystem& system);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRAINER_BODIES_SPRING_CLASSES_H_
