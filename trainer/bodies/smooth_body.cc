@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/smooth_body.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "trainer/bodies/factors.h"
@@ -39,15 +40,16 @@ SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording
     : factors_(start, SmoothOptions(start, recording, kind, options.hands_apart)),
       options_(options) {}
 
-Eigen::MatrixXd SmoothBody::Precision() const {
+Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
   Eigen::MatrixXd precision =
       kLevenbergMarquardtPrecision * Eigen::MatrixXd::Identity(size(), size());
   for (int i = 0; i < size(); ++i) {
     if (factors_.kind(i) == Parameters::Kind::kMode) precision(i, i) = 1 / (kMode * kMode);
   }
-  const double alike = 1 / (kNeighbouringClasses * kNeighbouringClasses);
   const int first = factors_.first_class(), end = first + factors_.classes().lengths;
   for (int i = first; factors_.classes().irregular && i + 1 < end; ++i) {
+    const double alike =
+        1 / (kNeighbouringClasses * std::max(kNeighbouringClasses, std::abs(x[i + 1] - x[i])));
     precision(i, i) += alike;
     precision(i + 1, i + 1) += alike;
     precision(i, i + 1) -= alike;

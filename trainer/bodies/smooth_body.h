@@ -29,7 +29,10 @@ class SmoothBody {
   int size() const { return factors_.size(); }
   const Parameters& factors() const { return factors_; }
   double most_rate() const { return options_.most_rate; }
-  Eigen::MatrixXd Precision() const;  // the prior's
+  // The prior's precision near x. Classes of an irregular mesh that are next to each other are
+  // about as stiff, but for a few jumps: their differences have a Laplace distribution, as the
+  // normal one that is as steep at x (iteratively reweighted least squares).
+  Eigen::MatrixXd Precision(const Eigen::VectorXd& x) const;
 
   // Where the system would need more sub-steps than that, its dashpots are lowered by one factor,
   // and where that is not enough, its stiffnesses: a fit that could not go there would be stuck.

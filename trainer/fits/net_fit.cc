@@ -22,13 +22,13 @@ constexpr GainSchedule kAllGains{0, 6};
 constexpr double kSlowRate = 2500;
 // With a smooth body whose residuals correlate less, nothing else is tried. One that is too slow
 // may leave little more than noise on the fit frames, and far more on another motion.
-constexpr double kSurelyNoise = 0.02;
+constexpr double kSurelyNoise = 0.01;
 // A body of a higher rate must lower the part of the error that is no noise to this share.
 constexpr double kWorthItsRate = 0.6;
 constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kSlow = 0.1, kSmooth = 0.3, kTriedSmooth = 0.35, kTriedStiffnesses = 0.45,
+constexpr double kSlowPart = 0.1, kSmoothPart = 0.3, kTriedSmooth = 0.35, kTriedStiffnesses = 0.45,
                  kTried = 0.6;
 
 enum class Kind { kSmooth, kStiffnesses, kSprings };
@@ -122,13 +122,14 @@ SmoothTrial NetFit::FitSmooth() const {
     if (is_better(trial)) best = trial;
     return trial;
   };
-  const bool limited = take(least, false, "smooth body", 0.5 * kSlow).limited;
-  if (hands && !limited && !best->HasArrived())
-    take(least, true, "smooth body, hands apart", kSlow);
+  const bool limited = take(least, false, "smooth body", 0.5 * kSlowPart).limited;
+  if (hands && !limited && !best->HasArrived()) {
+    take(least, true, "smooth body, hands apart", kSlowPart);
+  }
   if (most > least && !best->HasArrived()) {
-    take(most, false, "smooth body, stiff", 0.5 * (kSlow + kSmooth));
+    take(most, false, "smooth body, stiff", 0.5 * (kSlowPart + kSmoothPart));
     if (hands && !best->HasArrived()) {
-      take(most, true, "smooth body, stiff, hands apart", kSmooth);
+      take(most, true, "smooth body, stiff, hands apart", kSmoothPart);
     }
   }
   return *best;
@@ -149,7 +150,7 @@ Kind NetFit::BestPredictor(const SmoothTrial& smooth) const {
     least = error;
   };
   const SpringMassSystem tried = FitOn(smooth.fit, model(), fit, options_,
-                                       work_.Part("trial, smooth body", kSmooth, kTriedSmooth))
+                                       work_.Part("trial, smooth body", kSmoothPart, kTriedSmooth))
                                      .System();
   judge(Kind::kSmooth, tried);
   judge(Kind::kStiffnesses,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fit of a chosen spring net (bodies/body.h). It ends as one of two:
-//   a smooth body   few numbers for the whole body (smooth_fit.h)
-//   single springs  each with values of its own (spring_fit.h)
-// Single springs bend to the motion that they are fitted to. So they have to show that they predict
+// The fit of a chosen spring net (bodies/body.h). It ends as one of three:
+//   a smooth body        few numbers for the whole body (smooth_fit.h)
+//   single stiffnesses   of a smooth body whose springs have factors of their own (spring_fit.h)
+//   single springs       each with values of its own (spring_fit.h)
+// Single values bend to the motion that they are fitted to. So they have to show that they predict
 // a later one better.
 #ifndef PHYSPRING_TRAINER_FITS_NET_FIT_H_
 #define PHYSPRING_TRAINER_FITS_NET_FIT_H_
@@ -15,13 +16,10 @@ namespace physpring {
 
 // The system of the chosen body that fits the recordings. With --method smooth it is the smooth
 // body. Where the options ask for steps or an optimizer of single springs, it has these. Else:
-//   1. The smooth body is fitted. It stays if it leaves no more than noise
-//   (residual_correlation.h).
-//   2. If not, and if the single springs of the choice explain the fit frames better as they are,
-//   it
-//      gets single springs.
-//   3. Else both kinds are fitted to a part of the data, and judged on the rest by free motions
-//      (held_back.h). The better one is fitted to all.
+//   1. Smooth bodies are fitted, until one surely leaves no more than noise
+//      (residual_correlation.h). It stays.
+//   2. If none does, all kinds are fitted to a part of the data, and judged on the rest by free
+//      motions (held_back.h). The best one is fitted to all.
 SpringMassSystem FitNet(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
                         const Work& work);
 

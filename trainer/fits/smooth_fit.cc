@@ -82,7 +82,7 @@ StepReport SmoothFit::Step(SmoothState* state) const {
   fit.converged = true;
   if (nearby.FixSubsteps(fit.x)) {
     LevenbergMarquardtOptions levenberg = chosen_.body.kind->FactorOptions(recording_);
-    levenberg.precisions = body_.Precision();
+    levenberg.precisions = body_.Precision(fit.x);
     levenberg.tolerance = state->gain == kLastGain ? kFreeTolerance : kFollowedTolerance;
     levenberg.updates = kUpdates;
     levenberg.threads = options_.threads;

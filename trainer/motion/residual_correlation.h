@@ -22,13 +22,6 @@ inline constexpr double kNoiseCorrelation = 0.1;
 double ResidualCorrelation(const SpringMassSystem& system, const std::vector<Episode>& episodes,
                            RolloutOptions options);
 
-// For about how many frames errors stay alike: 1 + 2 times the sum of their autocorrelations at
-// lags of 1, 2, ... frames, up to the first that is noise (Sokal, Monte Carlo Methods in
-// Statistical Mechanics, 1996, section 3). So many frames tell as much as one whose errors are
-// independent. It is 1 where all is noise, and the number of frames where a motion diverges.
-double ResidualCorrelationTime(const SpringMassSystem& system, const std::vector<Episode>& episodes,
-                               RolloutOptions options);
-
 }  // namespace physpring
 
 #endif  // PHYSPRING_TRAINER_MOTION_RESIDUAL_CORRELATION_H_

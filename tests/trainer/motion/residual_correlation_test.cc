@@ -54,25 +54,6 @@ TEST(ResidualCorrelation, IsTheShareThatIsNoNoise) {
   EXPECT_NEAR(moved.Correlation(), 0.5, 0.05);
 }
 
-// Noise that is the same in four frames in a row correlates by 3/4, 1/2 and 1/4, so four frames
-// tell as much as one.
-TEST(ResidualCorrelation, TimeIsHowLongErrorsStayAlike) {
-  Moved moved;
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise(0, 1e-3);
-  Points error = Points::Zero(3, 12);
-  for (std::size_t frame = 0; frame < moved.recording.points.size(); ++frame) {
-    if (frame % 4 == 0) error = error.unaryExpr([&](double) { return noise(random); });
-    moved.recording.points[frame] += error;
-  }
-  const std::vector<Episode> episodes = {{&moved.recording, moved.recording.frame_count()}};
-  EXPECT_NEAR(ResidualCorrelationTime(moved.system, episodes, {}), 4, 0.5);
-  RolloutOptions diverging;
-  diverging.substeps = 1;
-  EXPECT_EQ(ResidualCorrelationTime(moved.system, episodes, diverging),
-            moved.recording.frame_count());
-}
-
 TEST(ResidualCorrelation, LeavesOutWhatIsNotSeen) {
   Moved moved;
   for (std::size_t frame = 1; frame < moved.recording.points.size(); frame += 2) {
