@@ -38,7 +38,9 @@ constexpr double kStiffest = 1.8;
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
                        const BodyKind& kind, const Options& options)
     : factors_(start, SmoothOptions(start, recording, kind, options.hands_apart)),
-      options_(options) {}
+      options_(options) {
+  options_.most_rate = std::max(1.0, std::floor(options.most_rate / recording.fps)) * recording.fps;
+}
 
 Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
   Eigen::MatrixXd precision =

@@ -18,7 +18,7 @@ namespace physpring {
 class SmoothBody {
  public:
   struct Options {
-    double most_rate;          // the most sub-steps a second that a system may need
+    double most_rate;          // the most sub-steps a second; whole ones a frame, at least one
     bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
   };
 
@@ -40,7 +40,8 @@ class SmoothBody {
   bool IsLimited(const Eigen::VectorXd& x) const;  // whether Apply lowers anything
 
  private:
-  double timestep() const { return 1 / (options_.most_rate * kStepSafety); }  // s, the shortest
+  // s: what must be stable. A little above the shortest sub-step, so that rounding needs no more.
+  double timestep() const { return 1.001 / (options_.most_rate * kStepSafety); }
 
   Parameters factors_;
   Options options_;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/bodies/smooth_body.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/swung_rope.h"
+#include "trainer/bodies/spring_net.h"
+#include "trainer/bodies/start_system.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kMostRate = 2500;  // sub-steps a second
+
+// A rope whose start needs so many sub-steps a second, and how it is fitted.
+struct Rope {
+  Recording recording = SwungRope(12, 10);
+  SpringMassSystem start =
+      MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6});
+
+  explicit Rope(double rate, double fps = 60) {
+    recording.fps = fps;
+    ScaleToSubsteps(1 / fps, rate / fps, kStepSafety, &start);
+  }
+  SmoothBody Body(bool hands_apart = false) const {
+    return {start, recording, SpringNet(), {kMostRate, hands_apart}};
+  }
+};
+
+double RateOf(const SpringMassSystem& system, double fps) {
+  return StableSubsteps(ComputeStabilityBound(system), 1 / fps, kStepSafety) * fps;
+}
+
+TEST(SmoothBody, IsItsStartAtZero) {
+  const Rope rope(1000);
+  const SmoothBody body = rope.Body();
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(body.size());
+  EXPECT_EQ(body.Apply(zero).stiffness, rope.start.stiffness);
+  EXPECT_EQ(body.Apply(zero).dashpot, rope.start.dashpot);
+  EXPECT_FALSE(body.IsLimited(zero));
+}
+
+// At 60 frames a second 2,500 is no whole number of sub-steps a frame.
+TEST(SmoothBody, NeverNeedsMoreSubstepsThanItMay) {
+  for (double fps : {30.0, 50.0, 60.0, 7.0}) {
+    for (double rate : {3000.0, 9000.0, 50000.0}) {
+      const Rope rope(rate, fps);
+      const SmoothBody body = rope.Body();
+      const Eigen::VectorXd zero = Eigen::VectorXd::Zero(body.size());
+      EXPECT_TRUE(body.IsLimited(zero));
+      EXPECT_LE(RateOf(body.Apply(zero), fps), body.most_rate());
+      EXPECT_GT(RateOf(body.Apply(zero), fps), 0.8 * body.most_rate());
+      EXPECT_LE(body.most_rate(), kMostRate);
+    }
+  }
+}
+
+TEST(SmoothBody, HandsApartHaveStiffnessesOfTheirOwn) {
+  const Rope rope(1000);
+  const SmoothBody body = rope.Body(true);
+  const SpringClasses& classes = body.factors().classes();
+  ASSERT_GT(classes.count, classes.lengths);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(body.size());
+  x[body.factors().first_class() + classes.lengths] = -1;  // the nearest spring of each controller
+  const Eigen::VectorXd ratio = body.Apply(x).stiffness.cwiseQuotient(rope.start.stiffness);
+  for (int e = 0; e < rope.start.spring_count(); ++e) {
+    const bool moved = classes.of_spring[e] == classes.lengths;
+    EXPECT_TRUE(!moved || rope.start.IsControllerSpring(e));
+    EXPECT_NEAR(ratio[e], moved ? std::exp(-1) : 1, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace physpring
