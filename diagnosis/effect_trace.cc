@@ -98,7 +98,7 @@ class Tracer {
       damped.diagonal() += damping * normal.diagonal();
       Eigen::VectorXd step = -damped.ldlt().solve(gradient);
       step *= std::min(1.0, kLongestStep / std::max(1e-300, step.cwiseAbs().maxCoeff()));
-      tried.push_back(x + step);
+      tried.emplace_back(x + step);
     }
     double least = at.squaredNorm();
     for (const auto& there : problem->Residuals(tried)) {

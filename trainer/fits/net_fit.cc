@@ -186,7 +186,7 @@ SpringMassSystem NetFit::Run() const {
       options_.epochs > 0 || options_.optimizer != TrainOptions::Optimizer::kAutomatic;
   if (springs_asked && !smooth_only) return FitAllSprings(0);
   const SmoothTrial smooth = FitSmooth();
-  const SpringMassSystem system = smooth.fit.System();
+  SpringMassSystem system = smooth.fit.System();
   if (smooth_only || smooth.correlation < kSurelyNoise) return system;
   switch (BestPredictor(smooth)) {
     case Kind::kStiffnesses:

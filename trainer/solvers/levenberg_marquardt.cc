@@ -84,7 +84,7 @@ class Objective {
       Eigen::VectorXd step = -damped.ldlt().solve(gradient);
       step *= std::min(1.0, options_.longest_step / std::max(1e-300, step.cwiseAbs().maxCoeff()));
       if (!step.allFinite()) continue;
-      tried.push_back(x + step);
+      tried.emplace_back(x + step);
       next_damping.push_back(std::clamp(damping * (factor == 1 ? 0.5 : 0.1), 1e-6, 1e6));
     }
     const auto r = EvaluateAll(residuals_, tried, options_.threads);
