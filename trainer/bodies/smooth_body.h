@@ -29,6 +29,7 @@ class SmoothBody {
   int size() const { return factors_.size(); }
   const Parameters& factors() const { return factors_; }
   double most_rate() const { return options_.most_rate; }
+  bool hands_apart() const { return options_.hands_apart; }
   // The prior's precision near x. Classes of an irregular mesh that are next to each other are
   // about as stiff, but for a few jumps: their differences have a Laplace distribution, as the
   // normal one that is as steep at x (iteratively reweighted least squares).

@@ -23,8 +23,9 @@ constexpr double kSlowRate = 2500;
 // With a smooth body whose residuals correlate less, nothing else is tried. One that is too slow
 // may leave little more than noise on the fit frames, and far more on another motion.
 constexpr double kSurelyNoise = 0.01;
-// A body of a higher rate must lower the part of the error that is no noise to this share.
-constexpr double kWorthItsRate = 0.6;
+// A body of a higher rate, or of more numbers at the hands, must lower the part of the error that
+// is no noise to this share.
+constexpr double kWorthItsCost = 0.6;
 constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
@@ -111,8 +112,10 @@ SmoothTrial NetFit::FitSmooth() const {
   std::optional<SmoothTrial> best;
   const auto is_better = [&](const SmoothTrial& trial) {
     if (!best || trial.HasArrived()) return true;
-    const double worth =
-        trial.fit.body.most_rate() > best->fit.body.most_rate() ? kWorthItsRate : 1;
+    const SmoothBody &one = trial.fit.body, &other = best->fit.body;
+    const bool costs_more =
+        one.most_rate() > other.most_rate() || (one.hands_apart() && !other.hands_apart());
+    const double worth = costs_more ? kWorthItsCost : 1;
     return trial.wrong_by < worth * best->wrong_by;
   };
   double from = 0;
