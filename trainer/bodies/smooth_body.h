@@ -2,8 +2,8 @@
 // A spring net as a material: few numbers say how stiff and how lossy its springs are, and none is
 // of a single spring. They are those of parameters.h:
 //   global      stiffness, loss time (dashpot / stiffness), drag, contact, effects
-//   classes     the stiffness of springs of one length
-//   one field       8 modes of stiffness along the body (spring_modes.h)
+//   classes     the stiffness of springs of one length, and of a hand's
+//   one field   some modes of stiffness along the body (spring_modes.h)
 // Single springs bend to one motion, and then predict no other one. These numbers do not: of bodies
 // that are networks they find the true ones (docs/decisions/111-smooth-bodies.md).
 #ifndef PHYSPRING_TRAINER_BODIES_SMOOTH_BODY_H_

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fit of level 0, by gradients and sensitivities of full rollouts:
 //   the choice of the body and the start values of its common factors (body_choice.h)
-//   a spring net becomes a smooth body, or gets single springs (net_fit.h)
+//   a spring net becomes a smooth body, or gets single stiffnesses or springs (net_fit.h)
 //   a chain that bends (bodies/bending_chain.h) has its common factors fitted further, by free
 //   motions (chain_fit.h)
 // The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a

@@ -123,10 +123,9 @@ SmoothTrial NetFit::FitSmooth() const {
     const SmoothTrial trial = TrySmooth({rate, apart}, work_.Part(name, from, to));
     from = to;
     if (is_better(trial)) best = trial;
-    return trial;
   };
-  const bool limited = take(least, false, "smooth body", 0.5 * kSlowPart).limited;
-  if (hands && !limited && !best->HasArrived()) {
+  take(least, false, "smooth body", 0.5 * kSlowPart);
+  if (hands && !best->limited && !best->HasArrived()) {
     take(least, true, "smooth body, hands apart", kSlowPart);
   }
   if (most > least && !best->HasArrived()) {

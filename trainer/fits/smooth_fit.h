@@ -21,8 +21,8 @@ struct SmoothlyFitted {
   SpringMassSystem System() const { return body.Apply(x); }
 };
 
-// The numbers that fit the episodes best.
-// The contact with the ground starts as chosen, all else as soft as the choice began.
+// The numbers that fit the episodes best. The contact with the ground starts as chosen, all else as
+// soft as the choice began.
 SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
                              const TrainOptions& options, const SmoothBody::Options& body,
                              const Work& work);
