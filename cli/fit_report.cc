@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "trainer/data/held_back.h"
+#include "trainer/fits/net_fit.h"
 #include "trainer/motion/residual_correlation.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/checks/motion_scale.h"
@@ -54,9 +55,16 @@ std::string WhatIsLeft(const Twin& twin, const FitData& data, bool single_precis
   rollout.controller_velocity = twin.controller_velocity;
   const double correlation =
       ResidualCorrelation(twin.levels[0].system, FitEpisodes(data, kMostRecordings), rollout);
-  return fmt::format(
-      "what is left is {} (the errors of one frame and the next correlate by {:.2f})",
-      correlation < kNoiseCorrelation ? "noise" : "more than noise", correlation);
+  const bool noise = correlation < kNoiseCorrelation;
+  std::string line =
+      fmt::format("what is left is {} (the errors of one frame and the next correlate by {:.2f})",
+                  noise ? "noise" : "more than noise", correlation);
+  if (!noise && !TriesSingleValues(data)) {
+    line +=
+        "; for so many particles and frames single springs were not tried: --optimizer "
+        "gauss-newton fits them";
+  }
+  return line;
 }
 
 std::string InMillimetres(const std::optional<double>& error) {

@@ -45,7 +45,7 @@ void VisitFitOptions(Options& options, Visitor& visit) {
                     "sub-steps of a frame; auto: as many as are stable");
   visit.Choice("--precision", &options.single_precision, kPrecisionWords, "of the simulation");
   visit.Choice("--controller-velocity", &options.controller_velocity, kVelocityWords,
-               "whether dashpots feel the controllers' velocity; auto: whatever predicts better, "
+               "whether dashpots feel the controllers' velocity; auto: what leaves less in a fit, "
                "no (two-stage)");
   visit.Choice("--cone", &options.cone, kConeWords,
                "of friction on the ground: Coulomb's, or MuJoCo's default; auto: whatever predicts "

@@ -189,20 +189,12 @@ TEST_F(Train, ReportsWhereTheTimeWent) {
       "reduction, common factors of coarse levels, single springs of coarse levels, writing "
       "checkpoints";
   EXPECT_EQ(PartsOf(RunProgram(Short("full") + levels)),
-            "choosing the model, single springs (Gauss-Newton), single springs (Adam), " + coarse);
+            "choosing the model, common factors, single springs (Gauss-Newton), single springs "
+            "(Adam), " +
+                coarse);
   const std::string from = folder_.File("from.twin.npz");
   std::filesystem::rename(twin_, from);
   EXPECT_EQ(PartsOf(RunProgram(Short("full") + levels + Words{"--from", from})), coarse);
-}
-
-// Where there is nothing to choose from, the choice leaves no springs to go on from.
-TEST_F(Train, FitsCommonFactorsOfTheOnlyModel) {
-  const Words only{"train",        rope_,      "-o",
-                   twin_,          "--epochs", "3",
-                   "--neighbours", "6",        "--controller-velocity",
-                   "on",           "--cone",   "elliptic"};
-  EXPECT_TRUE(
-      PartsOf(RunProgram(only)).starts_with("choosing the model, common factors, single springs"));
 }
 
 TEST_F(Train, LogsEveryStep) {

@@ -12,6 +12,12 @@ constexpr int kOneHeldBackOf = 4;  // ... of which one in so many is held back
 // The earlier frames of a motion, of which the later ones are held back, as a part of all.
 constexpr double kEarlier = 2.0 / 3;
 
+// A choice follows no more particles in frames (ParticleFrames) than this; but at least so many
+// frames of a recording, and so many seconds.
+constexpr double kEnoughParticleFrames = 4e4;
+constexpr int kFewestFrames = 40;
+constexpr double kFewestSeconds = 4.0 / 3;
+
 // Whether frame 1 ... `last` is held back.
 bool IsHeldBack(int frame, int last) {
   if (last < kParts) return frame == last;
@@ -56,6 +62,28 @@ std::vector<Episode> FitEpisodes(const FitData& data, int most) {
     episodes.push_back({&recording, recording.train_frames});
   }
   return SpreadEvenly(episodes, most);
+}
+
+double ParticleFrames(const FitData& data, int most) {
+  double sum = 0;
+  for (const Episode& episode : FitEpisodes(data, most)) {
+    sum += static_cast<double>(episode.frames - 1) * episode.recording->particle_count();
+  }
+  return sum;
+}
+
+FitData ShortMotions(const FitData& data, int most) {
+  FitData some = data;
+  const double part = kEnoughParticleFrames / std::max(1.0, ParticleFrames(data, most));
+  if (part >= 1) return some;
+  for (Recording& recording : some.recordings) {
+    const int last = recording.train_frames - 1;
+    const int fewest =
+        std::max(kFewestFrames, static_cast<int>(std::ceil(kFewestSeconds * recording.fps)));
+    recording.train_frames =
+        1 + std::min(last, std::max(fewest, static_cast<int>(std::ceil(part * last))));
+  }
+  return some;
 }
 
 std::vector<bool> HeldBackRuns(const FitData& data) {

@@ -21,18 +21,18 @@ namespace {
 
 constexpr int kMostChoiceRecordings = 4;  // start values are sought on no more than these
 // A round of the choice: under which of kObserverGains bodies are fitted, and how many go on from
-// it with either treatment of the controllers' velocity (what that is worth shows with single
-// springs).
+// it. The last one compares nets of single springs with bodies of another kind.
 struct Round {
   const char* name;
   double first_part, last_part;  // where it begins and ends in the choice's work
   int first_gain, last_gain;
   int most_steps;  // the most with each gain
-  int left_of_each;
+  int left;
 };
 constexpr std::array<Round, 3> kRounds = {
-    {{"far", 0, 0.5, 0, 1, 5, 3}, {"near", 0.5, 0.9, 2, 3, 6, 1}, {"springs", 0.9, 1, 3, 3, 6, 1}}};
+    {{"far", 0, 0.5, 0, 1, 5, 3}, {"near", 0.5, 0.9, 2, 3, 6, 2}, {"springs", 0.9, 1, 3, 3, 6, 1}}};
 constexpr const Round& kSpringRound = kRounds[2];
+constexpr double kHopeless = 1.1;  // nets so much worse than the best go no further
 constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground), and of an effect's.
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
@@ -229,20 +229,17 @@ StepReport RoundOfChoice::Judge(const SpringMassSystem& system, RoundState* stat
   return report;
 }
 
-// The contenders that go on after a round, in their old order.
-std::vector<Contender> Left(const std::vector<Contender>& all, int of_each) {
-  std::vector<std::size_t> order(all.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t i, std::size_t j) { return all[i].score < all[j].score; });
-  std::array<int, 2> left = {};  // those with and those without the controllers' velocity
-  std::erase_if(order, [&](std::size_t i) {
-    const bool velocity = all[i].model.body.controller_velocity;
-    return ++left[velocity ? 0 : 1] > of_each || !std::isfinite(all[i].score);
-  });
-  std::sort(order.begin(), order.end());
+// The contenders that go on after a round, in their old order: at most so many, and none that is
+// `hopeless` times worse than the best.
+std::vector<Contender> Left(const std::vector<Contender>& all, int most, double hopeless) {
+  std::vector<double> scores;
+  for (const Contender& one : all) scores.push_back(one.score);
+  std::sort(scores.begin(), scores.end());
+  const double worst = std::min(hopeless * scores[0], scores[std::min(all.size(), most + 0UL) - 1]);
   std::vector<Contender> going_on;
-  for (std::size_t i : order) going_on.push_back(all[i]);
+  for (const Contender& one : all) {
+    if (one.score <= worst && std::isfinite(one.score)) going_on.push_back(one);
+  }
   return going_on;
 }
 
@@ -257,13 +254,16 @@ void ExpectSome(const std::vector<Contender>& contenders, const Recording& first
 
 }  // namespace
 
-BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work& work) {
+ChosenBody ChooseBody(const FitData& data, const TrainOptions& asked, const Work& work) {
   const Recording& first = data.recordings.at(0);
-  const HeldBack held_back = HoldBack(data, kMostChoiceRecordings);
+  const FitData some = ShortMotions(data, kMostChoiceRecordings);
+  const HeldBack held_back = HoldBack(some, kMostChoiceRecordings);
   TrainOptions options = asked;
   options.single_precision = true;
   std::vector<Contender> contenders;
-  for (const Body& body : CandidateBodies(first, options)) {
+  const std::vector<Body> candidates = CandidateBodies(first, options);
+  for (const Body& body : candidates) {
+    if (body.controller_velocity != candidates[0].controller_velocity) continue;
     contenders.push_back({{body, 0, {}, {}}});
   }
   StartSystem(first, contenders[0].model.body, kSoftestStart);  // throws where there is no body
@@ -272,21 +272,20 @@ BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work
     const bool by_free_motions =
         std::any_of(contenders.begin(), contenders.end(),
                     [](const auto& one) { return !one.model.body.kind->has_single_springs(); });
+    if (&round == &kSpringRound && !by_free_motions) break;  // all are nets
     const RoundOfChoice in_round(round, by_free_motions, held_back, first, options);
     const Work of_round = work.Stretch(round.name, round.first_part, round.last_part);
     const int count = static_cast<int>(contenders.size());
     ParallelShared(count, options.threads, [&](int i, const std::function<int()>& threads) {
       contenders[i] = in_round.Run(contenders[i], threads, of_round.Item(i, count));
     });
-    const std::vector<Contender> left = Left(contenders, round.left_of_each);
-    ExpectSome(left, first, options);
-    contenders = left;
+    contenders = Left(contenders, round.left, by_free_motions ? kInfinity : kHopeless);
+    ExpectSome(contenders, first, options);
     if (contenders.size() == 1) break;  // there is nothing left to choose
   }
-  const auto best =
-      std::min_element(contenders.begin(), contenders.end(),
-                       [](const auto& a, const auto& b) { return a.score < b.score; });
-  return {best->model, best->springs};
+  return std::min_element(contenders.begin(), contenders.end(),
+                          [](const auto& a, const auto& b) { return a.score < b.score; })
+      ->model;
 }
 
 }  // namespace physpring

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The choice of a body (bodies/body.h) and of the start values of its common factors, on held-back
-// frames. In three rounds, under an observer whose gain falls (observer.h):
+// frames. In rounds, under an observer whose gain falls (observer.h):
 //   far      each candidate's factors are fitted with the two highest gains, from the best of a few
-//            start stiffnesses and frictions; three with and three without the controllers'
-//            velocity go on
-//   near     those are fitted with lower gains; the best with and without velocity go on
-//   springs  those are fitted a few steps further, spring by spring, with the same low gain, and
-//            judged by a free motion as well; a chain that bends (bodies/bending_chain.h) by its
-//            factors
+//            start stiffnesses and frictions; the best three go on
+//   near     those are fitted with lower gains; among nets this decides
+//   springs  the best two, where a chain that bends (bodies/bending_chain.h) is one of them: nets
+//   are
+//            fitted a few steps further, spring by spring, with the same low gain, and judged by a
+//            free motion as well; a chain by its factors
+// All contenders treat the controllers' velocity alike. What that is worth shows in a better fit
+// (net_fit.h).
 #ifndef PHYSPRING_TRAINER_FITS_BODY_CHOICE_H_
 #define PHYSPRING_TRAINER_FITS_BODY_CHOICE_H_
 
@@ -17,16 +19,9 @@
 
 namespace physpring {
 
-struct BodyChoice {
-  ChosenBody model;
-  // The springs' own values (factors.h, SpringFactors) of that model, as the last round fitted
-  // them; empty where there was none.
-  Eigen::VectorXd springs;
-};
-
 // Computes in single precision: for a choice that is enough. Throws Error where the recordings give
 // no body, and if the motion diverges with the start values of every candidate.
-BodyChoice ChooseBody(const FitData& data, const TrainOptions& asked, const Work& work);
+ChosenBody ChooseBody(const FitData& data, const TrainOptions& asked, const Work& work);
 
 }  // namespace physpring
 

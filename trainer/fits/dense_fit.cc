@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostMaterialRecordings = 4;  // tell the material
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kChosen = 0.45;
+constexpr double kChosen = 0.25;
 
 Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& data,
             const TrainOptions& options) {
@@ -37,18 +37,17 @@ Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work
   const Body simplest = CandidateBodies(first, options)[0];
   work.Reached(TwinOf(StartSystem(first, simplest, kSoftestStart), simplest, data, options));
 
-  const BodyChoice choice = ChooseBody(data, options, work.Part("choosing the model", 0, kChosen));
-  ChosenBody model = choice.model;
-  const Body& body = model.body;
-  work.Reached(TwinOf(model.System(first), body, data, options));
+  const ChosenBody chosen = ChooseBody(data, options, work.Part("choosing the model", 0, kChosen));
+  work.Reached(TwinOf(chosen.System(first), chosen.body, data, options));
 
-  if (!body.kind->has_single_springs()) {
-    model = FitChain(model, data, options, work.Part("chain", kChosen, 1));
-    return TwinOf(model.System(first), body, data, options);
+  if (!chosen.body.kind->has_single_springs()) {
+    const ChosenBody chain = FitChain(chosen, data, options, work.Part("chain", kChosen, 1));
+    return TwinOf(chain.System(first), chain.body, data, options);
   }
-  const SpringMassSystem net = FitNet(choice, data, options, work.Part("net", kChosen, 1));
-  Twin twin = TwinOf(net, body, data, options);
-  twin.material = EstimateMaterial(net, body, FitEpisodes(data, kMostMaterialRecordings), options);
+  const FittedNet net = FitNet(chosen, data, options, work.Part("net", kChosen, 1));
+  Twin twin = TwinOf(net.system, net.body, data, options);
+  twin.material =
+      EstimateMaterial(net.system, net.body, FitEpisodes(data, kMostMaterialRecordings), options);
   return twin;
 }
 

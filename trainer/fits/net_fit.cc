@@ -2,6 +2,7 @@
 #include "trainer/fits/net_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -16,6 +17,8 @@
 namespace physpring {
 namespace {
 
+// Single values are tried for no more particles in frames (held_back.h).
+constexpr double kMostParticleFrames = 1e5;
 constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more than these
 constexpr GainSchedule kAllGains{0, 6};
 // The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
@@ -29,8 +32,21 @@ constexpr double kWorthItsCost = 0.6;
 constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kSlowPart = 0.1, kSmoothPart = 0.3, kTriedSmooth = 0.35, kTriedStiffnesses = 0.45,
-                 kTried = 0.6;
+constexpr double kSmoothPart = 0.3, kAllFramesPart = 0.35, kTriedSmooth = 0.4,
+                 kTriedStiffnesses = 0.45, kTried = 0.6, kCommon = 0.65;
+
+// A smooth body that is tried: of at most kSlowRate or of any rate; and the parts of the work that
+// its fit ends at, with one treatment of the controllers' velocity and with both.
+struct Try {
+  const char* name;
+  bool stiff, hands_apart;
+  double fitted, with_velocity;
+};
+constexpr std::array<Try, 4> kTries = {
+    {{"smooth body", false, false, 0.05, 0.07},
+     {"smooth body, hands apart", false, true, 0.12, 0.14},
+     {"smooth body, stiff", true, false, 0.2, 0.22},
+     {"smooth body, stiff, hands apart", true, true, 0.28, kSmoothPart}}};
 
 enum class Kind { kSmooth, kStiffnesses, kSprings };
 
@@ -46,30 +62,43 @@ struct SmoothTrial {
 
 class NetFit {
  public:
-  NetFit(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
+  NetFit(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
          const Work& work)
-      : choice_(choice),
+      : model_(chosen),
         data_(data),
         options_(options),
         work_(work),
-        episodes_(FitEpisodes(data, kMostCommonRecordings)),
-        rollout_(FollowOptions(data.recordings.at(0), choice.model.body, options).rollout) {}
+        short_(ShortMotions(data, kMostCommonRecordings)),
+        enough_(FitEpisodes(short_, kMostCommonRecordings)),
+        episodes_(FitEpisodes(data, kMostCommonRecordings)) {}
 
-  SpringMassSystem Run() const;
+  FittedNet Run();
 
  private:
-  const ChosenBody& model() const { return choice_.model; }
+  bool HasHands() const { return data_.recordings[0].controller_count() > 0; }
+  RolloutOptions FreeMotion(const Body& body) const {
+    return FollowOptions(data_.recordings[0], body, options_).rollout;
+  }
+  double ErrorOf(const ChosenBody& model) const {
+    return GeometricTrackError(model.System(data_.recordings[0]), episodes_, FrameUse::kFit,
+                               FreeMotion(model.body));
+  }
+  SmoothTrial Judge(const SmoothlyFitted& fit) const;
   SmoothTrial TrySmooth(const SmoothBody::Options& body, const Work& work) const;
-  SmoothTrial FitSmooth() const;
+  SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work);
+  SmoothTrial FitSmooth();
   Kind BestPredictor(const SmoothTrial& smooth) const;
-  SpringMassSystem FitAllSprings(double from) const;
+  ChosenBody WithCommonFactors(const ChosenBody& model, const Work& work) const;
+  SpringMassSystem FitAllSprings(const ChosenBody& model, const Work& work) const;
+  FittedNet FitSpringsAlone() const;
 
-  const BodyChoice& choice_;
+  ChosenBody model_;
   const FitData& data_;
   const TrainOptions& options_;
   const Work& work_;
+  FitData short_;
+  std::vector<Episode> enough_;    // as many fit frames as smooth bodies are tried on
   std::vector<Episode> episodes_;  // all fit frames
-  RolloutOptions rollout_;         // a free motion
 };
 
 // The springs' own values, fitted to `data` from `x` on.
@@ -94,21 +123,40 @@ Eigen::VectorXd NoOwnValues(const ChosenBody& model, const Recording& first) {
   return Eigen::VectorXd::Zero(SpringFactors(model.System(first), first, *model.body.kind).size());
 }
 
-SmoothTrial NetFit::TrySmooth(const SmoothBody::Options& body, const Work& work) const {
-  const SmoothlyFitted fit = FitSmoothBody(model(), episodes_, options_, body, work);
+SmoothTrial NetFit::Judge(const SmoothlyFitted& fit) const {
   const SpringMassSystem system = fit.System();
-  const double correlation = ResidualCorrelation(system, episodes_, rollout_);
-  const double error = GeometricTrackError(system, episodes_, FrameUse::kFit, rollout_);
+  const double correlation = ResidualCorrelation(system, enough_, FreeMotion(model_.body));
+  const double error =
+      GeometricTrackError(system, enough_, FrameUse::kFit, FreeMotion(model_.body));
   return {fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
           fit.body.IsLimited(fit.x)};
+}
+
+SmoothTrial NetFit::TrySmooth(const SmoothBody::Options& body, const Work& work) const {
+  return Judge(FitSmoothBody(model_, enough_, options_, body, work));
+}
+
+ChosenBody WithOtherVelocity(ChosenBody model) {
+  model.body.controller_velocity = !model.body.controller_velocity;
+  return model;
+}
+
+// The trial, or the same body with the other treatment of the controllers' velocity where that
+// leaves less: model_ then has it.
+SmoothTrial NetFit::WithBetterVelocity(const SmoothTrial& trial, const Work& work) {
+  const ChosenBody before = model_;
+  model_ = WithOtherVelocity(model_);
+  const SmoothTrial other = Judge(FitOn(trial.fit, model_, enough_, options_, work));
+  if (other.wrong_by < trial.wrong_by) return other;
+  model_ = before;
+  return trial;
 }
 
 // The first smooth body that has arrived, or the best of them. Those of long sub-steps come first,
 // and of each those whose hands follow the law of the object. They differ in which side valleys
 // their fits end in.
-SmoothTrial NetFit::FitSmooth() const {
+SmoothTrial NetFit::FitSmooth() {
   const double most = MostRate(options_, data_.recordings[0]), least = std::min(kSlowRate, most);
-  const bool hands = data_.recordings[0].controller_count() > 0;
   std::optional<SmoothTrial> best;
   const auto is_better = [&](const SmoothTrial& trial) {
     if (!best || trial.HasArrived()) return true;
@@ -118,21 +166,28 @@ SmoothTrial NetFit::FitSmooth() const {
     const double worth = costs_more ? kWorthItsCost : 1;
     return trial.wrong_by < worth * best->wrong_by;
   };
+  bool velocity_is_open = HasHands() && !options_.controller_velocity;
   double from = 0;
-  const auto take = [&](double rate, bool apart, const char* name, double to) {
-    const SmoothTrial trial = TrySmooth({rate, apart}, work_.Part(name, from, to));
-    from = to;
+  for (const Try& one : kTries) {
+    const double rate = one.stiff ? most : least;
+    if ((one.stiff && most == least) || (one.hands_apart && !HasHands())) continue;
+    const bool wants_substeps = best && best->limited;  // hands apart do not help such a body
+    if (one.hands_apart && wants_substeps && rate < most) continue;
+    const SmoothTrial trial =
+        TrySmooth({rate, one.hands_apart}, work_.Part(one.name, from, one.fitted));
     if (is_better(trial)) best = trial;
-  };
-  take(least, false, "smooth body", 0.5 * kSlowPart);
-  if (hands && !best->limited && !best->HasArrived()) {
-    take(least, true, "smooth body, hands apart", kSlowPart);
-  }
-  if (most > least && !best->HasArrived()) {
-    take(most, false, "smooth body, stiff", 0.5 * (kSlowPart + kSmoothPart));
-    if (hands && !best->HasArrived()) {
-      take(most, true, "smooth body, stiff, hands apart", kSmoothPart);
+    if (velocity_is_open && !best->HasArrived() && (!best->limited || rate == most)) {
+      best = WithBetterVelocity(*best,
+                                work_.Part("controllers' velocity", one.fitted, one.with_velocity));
+      velocity_is_open = false;
     }
+    from = one.with_velocity;
+    if (best->HasArrived()) break;
+  }
+  if (ParticleFrames(short_, kMostCommonRecordings) <
+      ParticleFrames(data_, kMostCommonRecordings)) {
+    const Work on_all = work_.Part("smooth body, all frames", kSmoothPart, kAllFramesPart);
+    best->fit = FitOn(best->fit, model_, episodes_, options_, on_all);
   }
   return *best;
 }
@@ -146,67 +201,89 @@ Kind NetFit::BestPredictor(const SmoothTrial& smooth) const {
   Kind best = Kind::kSmooth;
   double least = kInfinity;
   const auto judge = [&](Kind kind, const SpringMassSystem& system) {
-    const double error = GeometricTrackError(system, judged, FrameUse::kHeld, rollout_);
+    const double error =
+        GeometricTrackError(system, judged, FrameUse::kHeld, FreeMotion(model_.body));
     if (error >= kWorthIt * least) return;
     best = kind;
     least = error;
   };
-  const SpringMassSystem tried = FitOn(smooth.fit, model(), fit, options_,
-                                       work_.Part("trial, smooth body", kSmoothPart, kTriedSmooth))
-                                     .System();
+  const SpringMassSystem tried =
+      FitOn(smooth.fit, model_, fit, options_,
+            work_.Part("trial, smooth body", kAllFramesPart, kTriedSmooth))
+          .System();
   judge(Kind::kSmooth, tried);
   judge(Kind::kStiffnesses,
-        FitStiffnesses(tried, model().body, held_back.fit, options_,
+        FitStiffnesses(tried, model_.body, held_back.fit, options_,
                        work_.Part("trial, stiffnesses", kTriedSmooth, kTriedStiffnesses)));
   if (smooth.correlation >= kNoiseCorrelation) {
     judge(Kind::kSprings,
-          FitSpringsOf(model(), held_back.fit, options_,
-                       NoOwnValues(model(), held_back.fit.recordings.at(0)),
+          FitSpringsOf(model_, held_back.fit, options_,
+                       NoOwnValues(model_, held_back.fit.recordings.at(0)),
                        work_.Part("trial, single springs", kTriedStiffnesses, kTried)));
   }
   return best;
 }
 
-// Single springs, fitted to all data in the work from `from` on.
-SpringMassSystem NetFit::FitAllSprings(double from) const {
-  if (choice_.springs.size() > 0 && GaussNewtonSteps(options_) > 0) {
-    return FitSpringsOf(model(), data_, options_, choice_.springs,
-                        work_.Part("single springs", from, 1));
-  }
-  ChosenBody start = model();
+// The model with common factors that are fitted to all data.
+ChosenBody NetFit::WithCommonFactors(const ChosenBody& model, const Work& work) const {
+  ChosenBody start = model;
   start.factors = start.start;
-  const double common = from + 0.1 * (1 - from);
-  start = FitCommonFactors(start, episodes_, options_, kAllGains,
-                           work_.Part("common factors", from, common));
-  return FitSpringsOf(start, data_, options_, NoOwnValues(start, data_.recordings.at(0)),
-                      work_.Part("single springs", common, 1));
+  return FitCommonFactors(start, episodes_, options_, kAllGains, work.Part("common factors", 0, 1));
 }
 
-SpringMassSystem NetFit::Run() const {
+// Single springs of a model with common factors, fitted to all data.
+SpringMassSystem NetFit::FitAllSprings(const ChosenBody& model, const Work& work) const {
+  return FitSpringsOf(model, data_, options_, NoOwnValues(model, data_.recordings.at(0)), work);
+}
+
+// Single springs without a smooth body before, which would have told the treatment of the
+// controllers' velocity: common factors tell it.
+FittedNet NetFit::FitSpringsAlone() const {
+  const bool may_choose = HasHands() && !options_.controller_velocity;
+  const double compared = may_choose ? 0.05 : 0.1, common = 0.1;
+  ChosenBody model = WithCommonFactors(model_, work_.Stretch("one", 0, compared));
+  if (may_choose) {
+    const ChosenBody other =
+        WithCommonFactors(WithOtherVelocity(model_), work_.Stretch("other", compared, common));
+    if (ErrorOf(other) < ErrorOf(model)) model = other;
+  }
+  return {FitAllSprings(model, work_.Part("single springs", common, 1)), model.body};
+}
+
+FittedNet NetFit::Run() {
   const bool smooth_only = options_.method == TrainOptions::Method::kSmooth;
   const bool springs_asked =
       options_.epochs > 0 || options_.optimizer != TrainOptions::Optimizer::kAutomatic;
-  if (springs_asked && !smooth_only) return FitAllSprings(0);
+  if (springs_asked && !smooth_only) return FitSpringsAlone();
   const SmoothTrial smooth = FitSmooth();
-  SpringMassSystem system = smooth.fit.System();
-  if (smooth_only || smooth.correlation < kSurelyNoise) return system;
+  const SpringMassSystem system = smooth.fit.System();
+  if (smooth_only || smooth.correlation < kSurelyNoise || !TriesSingleValues(data_)) {
+    return {system, model_.body};
+  }
   switch (BestPredictor(smooth)) {
     case Kind::kStiffnesses:
-      return FitStiffnesses(system, model().body, data_, options_,
-                            work_.Part("stiffnesses", kTried, 1));
+      return {FitStiffnesses(system, model_.body, data_, options_,
+                             work_.Part("stiffnesses", kTried, 1)),
+              model_.body};
     case Kind::kSprings:
-      return FitAllSprings(kTried);
+      return {FitAllSprings(WithCommonFactors(model_, work_.Stretch("all", kTried, kCommon)),
+                            work_.Part("single springs", kCommon, 1)),
+              model_.body};
     case Kind::kSmooth:
       break;
   }
-  return system;
+  return {system, model_.body};
 }
 
 }  // namespace
 
-SpringMassSystem FitNet(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
-                        const Work& work) {
-  return NetFit(choice, data, options, work).Run();
+bool TriesSingleValues(const FitData& data) {
+  return ParticleFrames(data, kMostSpringRecordings) <= kMostParticleFrames;
+}
+
+FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
+                 const Work& work) {
+  return NetFit(chosen, data, options, work).Run();
 }
 
 }  // namespace physpring

@@ -8,20 +8,31 @@
 #ifndef PHYSPRING_TRAINER_FITS_NET_FIT_H_
 #define PHYSPRING_TRAINER_FITS_NET_FIT_H_
 
+#include "trainer/bodies/chosen_body.h"
 #include "trainer/data/fit_data.h"
-#include "trainer/fits/body_choice.h"
 #include "trainer/journal/work.h"
 
 namespace physpring {
 
+struct FittedNet {
+  SpringMassSystem system;
+  Body body;  // the chosen one, but for the controllers' velocity
+};
+
 // The system of the chosen body that fits the recordings. With --method smooth it is the smooth
 // body. Where the options ask for steps or an optimizer of single springs, it has these. Else:
 //   1. Smooth bodies are fitted, until one surely leaves no more than noise
-//      (residual_correlation.h). It stays.
-//   2. If none does, all kinds are fitted to a part of the data, and judged on the rest by free
-//      motions (held_back.h). The best one is fitted to all.
-SpringMassSystem FitNet(const BodyChoice& choice, const FitData& data, const TrainOptions& options,
-                        const Work& work);
+//      (residual_correlation.h). It stays. Where the options leave open whether dashpots feel the
+//      controllers' velocity, the first body that leaves more than noise, and wants no more
+//      sub-steps, is fitted with the other treatment too, and the better one goes on.
+//   2. If none does, and TriesSingleValues, all kinds are fitted to a part of the data, and judged
+//      on the rest by free motions (held_back.h). The best one is fitted to all.
+FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
+                 const Work& work);
+
+// Whether step 2 fits single values. Of many particles in many frames it does not: that takes
+// hours.
+bool TriesSingleValues(const FitData& data);
 
 }  // namespace physpring
 

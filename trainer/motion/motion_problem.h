@@ -39,6 +39,8 @@ class MotionProblem : public LeastSquares {
   SpringMassSystem SystemAt(const Eigen::VectorXd& x) const { return map_.Apply(x); }
   const LiftedMotion::Substeps& substeps() const { return substeps_; }
 
+  int residual_count() const { return static_cast<int>(offset_.back()); }
+
   // Keeps the sub-steps that x needs; false if that is too many.
   bool FixSubsteps(const Eigen::VectorXd& x);
 

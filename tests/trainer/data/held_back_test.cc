@@ -116,6 +116,28 @@ TEST(FitEpisodes, AreAllFitFramesOfRecordingsSpreadEvenly) {
   }
 }
 
+TEST(ShortMotions, AreTheFirstFramesOfManyParticles) {
+  FitData data = OfRuns({0, 1});
+  for (Recording& recording : data.recordings) {
+    recording.fps = 30;
+    recording.train_frames = 201;
+    recording.points[0] = Points::Zero(3, 150);
+  }
+  EXPECT_EQ(ParticleFrames(data, 2), 2 * 200 * 150);
+  EXPECT_EQ(ParticleFrames(data, 1), 200 * 150);
+  const auto frames = [&](int most) {
+    return ShortMotions(data, most).recordings[1].train_frames - 1;
+  };
+  EXPECT_EQ(frames(1), 200);  // few enough
+  EXPECT_EQ(frames(2), 134);  // two thirds of them are
+  for (Recording& recording : data.recordings) recording.points[0] = Points::Zero(3, 5000);
+  EXPECT_EQ(frames(2), 40);
+  for (Recording& recording : data.recordings) recording.fps = 60;
+  EXPECT_EQ(frames(2), 80);  // 4/3 s
+  for (Recording& recording : data.recordings) recording.train_frames = 31;
+  EXPECT_EQ(frames(2), 30);
+}
+
 TEST(HoldBackMotion, HoldsBackTheLaterThirdOfFewRecordings) {
   const FitData data = OfRuns({0, 1});
   const HeldBackMotion split = HoldBackMotion(data, 100);

@@ -78,13 +78,13 @@ struct SmoothRope {
   SpringMassSystem truth;
 };
 
-SmoothRope MakeSmoothRope() {
+SmoothRope MakeSmoothRope(bool controller_velocity = true, double loss_time = 2e-3) {
   SmoothRope rope;
   Recording recording = SwungRope(kParticles, 40);
   rope.truth = MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6});
   ScaleToSubsteps(1 / recording.fps, 12, 0.7, &rope.truth);
-  rope.truth.dashpot = 2e-3 * rope.truth.stiffness;
-  MoveAs(rope.truth, true, &recording);
+  rope.truth.dashpot = loss_time * rope.truth.stiffness;
+  MoveAs(rope.truth, controller_velocity, &recording);
   rope.data.recordings.push_back(recording);
   rope.data.continuous_recording.push_back(0);
   return rope;
@@ -132,6 +132,19 @@ TEST(FitDense, SmoothBodyStaysWhereItLeavesNoise) {
   ExpectSameTwin(fit(TrainOptions::Method::kFull, &full),
                  fit(TrainOptions::Method::kSmooth, &smooth));
   EXPECT_EQ(full.parts.count("trial, single springs"), 0u);
+}
+
+TEST(FitDense, FindsWhetherDashpotsFeelTheControllers) {
+  for (const bool felt : {true, false}) {
+    SmoothRope rope = MakeSmoothRope(felt, 8e-3);
+    AddNoise(&rope.data.recordings[0]);
+    for (const bool smooth : {true, false}) {
+      TrainOptions options = OptionsOfSmoothRope(TrainOptions::Method::kFull);
+      options.controller_velocity = {};
+      if (!smooth) options.epochs = 2;
+      EXPECT_EQ(Fit(rope.data, options).controller_velocity, felt) << smooth;
+    }
+  }
 }
 
 bool Holds(const Estimate& estimate, double truth) {
