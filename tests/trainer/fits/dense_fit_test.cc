@@ -11,6 +11,7 @@
 #include "tests/support/swung_rope.h"
 #include "trainer/bodies/candidates.h"
 #include "trainer/bodies/start_system.h"
+#include "trainer/fits/net_fit.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
 #include "twin/topology.h"
@@ -205,6 +206,15 @@ TEST(FitDense, SingleSpringsWhereTheyPredictBetter) {
   int stops = 0;
   ExpectSameTwin(RunStopped(fit, 3, &stops), twin);
   EXPECT_GT(stops, 5);
+}
+
+TEST(FitDense, TriesSingleValuesOfFewParticlesInFewFrames) {
+  FitData data = Swung();
+  data.recordings[0].points[0] = Points::Zero(3, 1000);
+  data.recordings[0].train_frames = 101;
+  EXPECT_TRUE(TriesSingleValues(data));
+  data.recordings[0].train_frames = 102;
+  EXPECT_FALSE(TriesSingleValues(data));
 }
 
 TEST(FitDense, KeepsTheEffectsThatItIsGiven) {
