@@ -32,7 +32,8 @@ struct Round {
 constexpr std::array<Round, 3> kRounds = {
     {{"far", 0, 0.5, 0, 1, 5, 3}, {"near", 0.5, 0.9, 2, 3, 6, 2}, {"springs", 0.9, 1, 3, 3, 6, 1}}};
 constexpr const Round& kSpringRound = kRounds[2];
-constexpr double kHopeless = 1.1;  // nets so much worse than the best go no further
+constexpr double kWorthMore = 0.95;  // more neighbours must lower the error to this share
+constexpr double kHopeless = 1.1;    // nets so much worse than the best go no further
 constexpr int kChoiceConjugateGradients = 20;
 // Changes of the friction's factor that are tried (on a ground), and of an effect's.
 constexpr std::array<double, 3> kFrictions = {0, -1, 1.2};
@@ -243,6 +244,17 @@ std::vector<Contender> Left(const std::vector<Contender>& all, int most, double 
   return going_on;
 }
 
+// The contender of the least score; but a net of more neighbours has to be worth it.
+const Contender& Best(const std::vector<Contender>& contenders) {
+  const Contender* best = &contenders.at(0);
+  for (const Contender& one : contenders) {
+    const Body &body = one.model.body, &other = best->model.body;
+    const bool costs_more = body.kind == other.kind && body.neighbours > other.neighbours;
+    if (one.score < (costs_more ? kWorthMore : 1) * best->score) best = &one;
+  }
+  return *best;
+}
+
 void ExpectSome(const std::vector<Contender>& contenders, const Recording& first,
                 const TrainOptions& options) {
   if (!contenders.empty()) return;
@@ -283,9 +295,7 @@ ChosenBody ChooseBody(const FitData& data, const TrainOptions& asked, const Work
     ExpectSome(contenders, first, options);
     if (contenders.size() == 1) break;  // there is nothing left to choose
   }
-  return std::min_element(contenders.begin(), contenders.end(),
-                          [](const auto& a, const auto& b) { return a.score < b.score; })
-      ->model;
+  return Best(contenders).model;
 }
 
 }  // namespace physpring
