@@ -49,9 +49,9 @@ std::optional<double> MotionlessTrack(const std::vector<RecordingResult>& result
 }
 
 // Whether what level 0 leaves of the fit frames is noise.
-std::string WhatIsLeft(const Twin& twin, const FitData& data, bool single_precision) {
+std::string WhatIsLeft(const Twin& twin, const FitData& data, const TrainOptions& options) {
   RolloutOptions rollout;
-  rollout.single_precision = single_precision;
+  rollout.single_precision = options.single_precision;
   rollout.controller_velocity = twin.controller_velocity;
   const double correlation =
       ResidualCorrelation(twin.levels[0].system, FitEpisodes(data, kMostRecordings), rollout);
@@ -59,7 +59,8 @@ std::string WhatIsLeft(const Twin& twin, const FitData& data, bool single_precis
   std::string line =
       fmt::format("what is left is {} (the errors of one frame and the next correlate by {:.2f})",
                   noise ? "noise" : "more than noise", correlation);
-  if (!noise && !TriesSingleValues(data)) {
+  const bool is_net = twin.material.has_value();  // no chain
+  if (!noise && is_net && LeavesOutSingleValues(data, options)) {
     line +=
         "; for so many particles and frames single springs were not tried: --optimizer "
         "gauss-newton fits them";
@@ -101,14 +102,14 @@ std::string LittleExplained(const std::vector<RecordingResult>& results,
   return TooLittleExplained(*level, *still, MeasurementNoise(noisy.points));
 }
 
-FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision, int threads) {
+FitReport JudgeFit(const Twin& twin, const FitData& data, const TrainOptions& options) {
   const int count = static_cast<int>(data.recordings.size());
   std::vector<RecordingResult> results(count);
   std::vector<int> first(count, 1), split(count), end(count);
   Twin dense = twin;
   dense.levels.resize(1);
-  ParallelFor(count, threads, [&](int i) {
-    results[i] = Evaluate(dense, data.recordings[i], {single_precision, 0});
+  ParallelFor(count, options.threads, [&](int i) {
+    results[i] = Evaluate(dense, data.recordings[i], {options.single_precision, 0});
     split[i] = data.recordings[i].train_frames;
     end[i] = data.recordings[i].frame_count();
   });
@@ -120,7 +121,7 @@ FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision,
   report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
                             InMillimetres(fit), InMillimetres(still));
   if (later) report.line += fmt::format("; on the later ones: {}", InMillimetres(later));
-  report.line += "\n" + WhatIsLeft(twin, data, single_precision);
+  report.line += "\n" + WhatIsLeft(twin, data, options);
   const std::string little = LittleExplained(results, first, split, data.recordings[0]);
   if (!little.empty()) report.warnings.push_back(little);
   if (later && report.warnings.empty()) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trainer/data/fit_data.h"
+#include "trainer/data/train_options.h"
 #include "twin/evaluate.h"
 #include "twin/twin.h"
 
@@ -17,8 +18,8 @@ struct FitReport {
   std::vector<std::string> warnings;  // a useless twin, and a baseline that is nearer
 };
 
-// Throws Error if the twin diverges.
-FitReport JudgeFit(const Twin& twin, const FitData& data, bool single_precision, int threads);
+// Of a twin trained on `data` with these options. Throws Error if the twin diverges.
+FitReport JudgeFit(const Twin& twin, const FitData& data, const TrainOptions& options);
 
 // A line for each level, and each baseline (twin/baselines.h) that is nearer than it to what was
 // measured in frames [first, last) of the recordings, by more than a twentieth. `frames` says which

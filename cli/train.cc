@@ -204,7 +204,7 @@ void Run(const TrainArguments& arguments) {
     throw Interrupted{run.signal};
   }
   Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
-  const FitReport fit = JudgeFit(run.twin, data, options.single_precision, options.threads);
+  const FitReport fit = JudgeFit(run.twin, data, options);
   Warn(fit.warnings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   PrintReport(arguments.output, run, fit.line, elapsed.count());

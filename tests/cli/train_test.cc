@@ -197,6 +197,15 @@ TEST_F(Train, ReportsWhereTheTimeWent) {
   EXPECT_EQ(PartsOf(RunProgram(Short("full") + levels + Words{"--from", from})), coarse);
 }
 
+TEST_F(Train, FitsCommonFactorsOfTheOnlyModel) {
+  const Words only{"train",        rope_,      "-o",
+                   twin_,          "--epochs", "3",
+                   "--neighbours", "6",        "--controller-velocity",
+                   "on",           "--cone",   "elliptic"};
+  EXPECT_TRUE(
+      PartsOf(RunProgram(only)).starts_with("choosing the model, common factors, single springs"));
+}
+
 TEST_F(Train, LogsEveryStep) {
   const std::string log = folder_.File("log");
   ASSERT_EQ(RunProgram(Short("two-stage") + Words{"--log", log}).status, 0);

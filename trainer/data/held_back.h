@@ -58,7 +58,8 @@ std::vector<T> SpreadEvenly(const std::vector<T>& all, int most) {
 // All fit frames of at most `most` recordings, spread evenly.
 std::vector<Episode> FitEpisodes(const FitData& data, int most);
 
-// The particles of `most` recordings, spread evenly, in all fit frames: how much there is to follow.
+// The particles of `most` recordings, spread evenly, in all fit frames: how much there is to
+// follow.
 double ParticleFrames(const FitData& data, int most);
 
 // The same recordings with no more fit frames than tell which body to choose: of many particles

@@ -42,8 +42,7 @@ constexpr std::array<double, 3> kEffectChanges = {0, -2, 2};
 // A candidate on its way through the rounds.
 struct Contender {
   ChosenBody model;
-  Eigen::VectorXd springs = {};  // the springs' own values from the last round
-  double score = kInfinity;      // its score in the last round it was in, m
+  double score = kInfinity;  // its score in the last round it was in, m
 };
 
 // A contender in the middle of a round.
@@ -51,11 +50,12 @@ struct RoundState {
   Contender contender;
   int gain, iteration = 0;  // gain: an index of kObserverGains
   double damping = 0, mean_square = 0;
+  Eigen::VectorXd springs = {};  // the springs' own values, in the last round
 
   template <class Visitor>
   void Visit(Visitor&& visit) {
     ChosenBody& model = contender.model;
-    visit(model.body.stretch, model.start_substeps, model.start, model.factors, contender.springs,
+    visit(model.body.stretch, model.start_substeps, model.start, model.factors, springs,
           contender.score, gain, iteration, damping, mean_square);
   }
 };
@@ -187,7 +187,7 @@ StepReport RoundOfChoice::StepCommonFactors(const TrainOptions& options, RoundSt
 StepReport RoundOfChoice::StepSprings(const TrainOptions& options, RoundState* state) const {
   const ChosenBody& model = state->contender.model;
   const Parameters parameters = SpringFactors(model.System(first_), first_, *model.body.kind);
-  Eigen::VectorXd& springs = state->contender.springs;
+  Eigen::VectorXd& springs = state->springs;
   if (state->iteration == 0) {
     springs = Eigen::VectorXd::Zero(parameters.size());
     state->damping = 1e-3;
@@ -230,13 +230,14 @@ StepReport RoundOfChoice::Judge(const SpringMassSystem& system, RoundState* stat
   return report;
 }
 
-// The contenders that go on after a round, in their old order: at most so many, and none that is
+// The contenders that go on after a round, in their old order: the best `most`, and none that is
 // `hopeless` times worse than the best.
 std::vector<Contender> Left(const std::vector<Contender>& all, int most, double hopeless) {
   std::vector<double> scores;
   for (const Contender& one : all) scores.push_back(one.score);
   std::sort(scores.begin(), scores.end());
-  const double worst = std::min(hopeless * scores[0], scores[std::min(all.size(), most + 0UL) - 1]);
+  const double worst =
+      std::min(hopeless * scores[0], scores[std::min<std::size_t>(all.size(), most) - 1]);
   std::vector<Contender> going_on;
   for (const Contender& one : all) {
     if (one.score <= worst && std::isfinite(one.score)) going_on.push_back(one);

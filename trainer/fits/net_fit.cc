@@ -83,13 +83,11 @@ class NetFit {
     return GeometricTrackError(model.System(data_.recordings[0]), episodes_, FrameUse::kFit,
                                FreeMotion(model.body));
   }
-  SmoothTrial Judge(const SmoothlyFitted& fit) const;
-  SmoothTrial TrySmooth(const SmoothBody::Options& body, const Work& work) const;
+  SmoothTrial Judge(const SmoothlyFitted& fit, const Body& body) const;
   SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work);
   SmoothTrial FitSmooth();
   Kind BestPredictor(const SmoothTrial& smooth) const;
   ChosenBody WithCommonFactors(const ChosenBody& model, const Work& work) const;
-  SpringMassSystem FitAllSprings(const ChosenBody& model, const Work& work) const;
   FittedNet FitSpringsAlone() const;
 
   ChosenBody model_;
@@ -101,39 +99,38 @@ class NetFit {
   std::vector<Episode> episodes_;  // all fit frames
 };
 
-// The springs' own values, fitted to `data` from `x` on.
-SpringMassSystem FitSpringsOf(const ChosenBody& model, const FitData& data,
-                              const TrainOptions& options, const Eigen::VectorXd& x,
-                              const Work& work) {
-  const Recording& first = data.recordings.at(0);
-  const Parameters springs = SpringFactors(model.System(first), first, *model.body.kind);
-  return springs.Apply(FitSprings(springs, model.body, data, options, x, work));
+// The system with values of its springs' own, fitted to `data` from none on.
+SpringMassSystem WithOwnValues(const Parameters& springs, const Body& body, const FitData& data,
+                               const TrainOptions& options, const Work& work) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(springs.size());
+  return springs.Apply(FitSprings(springs, body, data, options, none, work));
 }
 
-// The springs' own stiffnesses, fitted to `data` from a smooth body on.
+SpringMassSystem FitSpringsOf(const ChosenBody& model, const FitData& data,
+                              const TrainOptions& options, const Work& work) {
+  const Recording& first = data.recordings.at(0);
+  return WithOwnValues(SpringFactors(model.System(first), first, *model.body.kind), model.body,
+                       data, options, work);
+}
+
 SpringMassSystem FitStiffnesses(const SpringMassSystem& smooth, const Body& body,
                                 const FitData& data, const TrainOptions& options,
                                 const Work& work) {
-  const Parameters springs = StiffnessFactors(smooth, data.recordings.at(0), *body.kind);
-  const Eigen::VectorXd start = Eigen::VectorXd::Zero(springs.size());
-  return springs.Apply(FitSprings(springs, body, data, options, start, work));
+  return WithOwnValues(StiffnessFactors(smooth, data.recordings.at(0), *body.kind), body, data,
+                       options, work);
 }
 
-Eigen::VectorXd NoOwnValues(const ChosenBody& model, const Recording& first) {
-  return Eigen::VectorXd::Zero(SpringFactors(model.System(first), first, *model.body.kind).size());
+bool AsksForSprings(const TrainOptions& options) {
+  return options.method == TrainOptions::Method::kFull &&
+         (options.epochs > 0 || options.optimizer != TrainOptions::Optimizer::kAutomatic);
 }
 
-SmoothTrial NetFit::Judge(const SmoothlyFitted& fit) const {
+SmoothTrial NetFit::Judge(const SmoothlyFitted& fit, const Body& body) const {
   const SpringMassSystem system = fit.System();
-  const double correlation = ResidualCorrelation(system, enough_, FreeMotion(model_.body));
-  const double error =
-      GeometricTrackError(system, enough_, FrameUse::kFit, FreeMotion(model_.body));
+  const double correlation = ResidualCorrelation(system, enough_, FreeMotion(body));
+  const double error = GeometricTrackError(system, enough_, FrameUse::kFit, FreeMotion(body));
   return {fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
           fit.body.IsLimited(fit.x)};
-}
-
-SmoothTrial NetFit::TrySmooth(const SmoothBody::Options& body, const Work& work) const {
-  return Judge(FitSmoothBody(model_, enough_, options_, body, work));
 }
 
 ChosenBody WithOtherVelocity(ChosenBody model) {
@@ -144,12 +141,11 @@ ChosenBody WithOtherVelocity(ChosenBody model) {
 // The trial, or the same body with the other treatment of the controllers' velocity where that
 // leaves less: model_ then has it.
 SmoothTrial NetFit::WithBetterVelocity(const SmoothTrial& trial, const Work& work) {
-  const ChosenBody before = model_;
-  model_ = WithOtherVelocity(model_);
-  const SmoothTrial other = Judge(FitOn(trial.fit, model_, enough_, options_, work));
-  if (other.wrong_by < trial.wrong_by) return other;
-  model_ = before;
-  return trial;
+  const ChosenBody model = WithOtherVelocity(model_);
+  const SmoothTrial other = Judge(FitOn(trial.fit, model, enough_, options_, work), model.body);
+  if (!(other.wrong_by < trial.wrong_by)) return trial;
+  model_ = model;
+  return other;
 }
 
 // The first smooth body that has arrived, or the best of them. Those of long sub-steps come first,
@@ -174,7 +170,9 @@ SmoothTrial NetFit::FitSmooth() {
     const bool wants_substeps = best && best->limited;  // hands apart do not help such a body
     if (one.hands_apart && wants_substeps && rate < most) continue;
     const SmoothTrial trial =
-        TrySmooth({rate, one.hands_apart}, work_.Part(one.name, from, one.fitted));
+        Judge(FitSmoothBody(model_, enough_, options_, {rate, one.hands_apart},
+                            work_.Part(one.name, from, one.fitted)),
+              model_.body);
     if (is_better(trial)) best = trial;
     if (velocity_is_open && !best->HasArrived() && (!best->limited || rate == most)) {
       best = WithBetterVelocity(*best,
@@ -218,7 +216,6 @@ Kind NetFit::BestPredictor(const SmoothTrial& smooth) const {
   if (smooth.correlation >= kNoiseCorrelation) {
     judge(Kind::kSprings,
           FitSpringsOf(model_, held_back.fit, options_,
-                       NoOwnValues(model_, held_back.fit.recordings.at(0)),
                        work_.Part("trial, single springs", kTriedStiffnesses, kTried)));
   }
   return best;
@@ -229,11 +226,6 @@ ChosenBody NetFit::WithCommonFactors(const ChosenBody& model, const Work& work) 
   ChosenBody start = model;
   start.factors = start.start;
   return FitCommonFactors(start, episodes_, options_, kAllGains, work.Part("common factors", 0, 1));
-}
-
-// Single springs of a model with common factors, fitted to all data.
-SpringMassSystem NetFit::FitAllSprings(const ChosenBody& model, const Work& work) const {
-  return FitSpringsOf(model, data_, options_, NoOwnValues(model, data_.recordings.at(0)), work);
 }
 
 // Single springs without a smooth body before, which would have told the treatment of the
@@ -247,17 +239,16 @@ FittedNet NetFit::FitSpringsAlone() const {
         WithCommonFactors(WithOtherVelocity(model_), work_.Stretch("other", compared, common));
     if (ErrorOf(other) < ErrorOf(model)) model = other;
   }
-  return {FitAllSprings(model, work_.Part("single springs", common, 1)), model.body};
+  return {FitSpringsOf(model, data_, options_, work_.Part("single springs", common, 1)),
+          model.body};
 }
 
 FittedNet NetFit::Run() {
   const bool smooth_only = options_.method == TrainOptions::Method::kSmooth;
-  const bool springs_asked =
-      options_.epochs > 0 || options_.optimizer != TrainOptions::Optimizer::kAutomatic;
-  if (springs_asked && !smooth_only) return FitSpringsAlone();
+  if (AsksForSprings(options_)) return FitSpringsAlone();
   const SmoothTrial smooth = FitSmooth();
   const SpringMassSystem system = smooth.fit.System();
-  if (smooth_only || smooth.correlation < kSurelyNoise || !TriesSingleValues(data_)) {
+  if (smooth_only || smooth.correlation < kSurelyNoise || LeavesOutSingleValues(data_, options_)) {
     return {system, model_.body};
   }
   switch (BestPredictor(smooth)) {
@@ -266,8 +257,8 @@ FittedNet NetFit::Run() {
                              work_.Part("stiffnesses", kTried, 1)),
               model_.body};
     case Kind::kSprings:
-      return {FitAllSprings(WithCommonFactors(model_, work_.Stretch("all", kTried, kCommon)),
-                            work_.Part("single springs", kCommon, 1)),
+      return {FitSpringsOf(WithCommonFactors(model_, work_.Stretch("all", kTried, kCommon)), data_,
+                           options_, work_.Part("single springs", kCommon, 1)),
               model_.body};
     case Kind::kSmooth:
       break;
@@ -277,8 +268,9 @@ FittedNet NetFit::Run() {
 
 }  // namespace
 
-bool TriesSingleValues(const FitData& data) {
-  return ParticleFrames(data, kMostSpringRecordings) <= kMostParticleFrames;
+bool LeavesOutSingleValues(const FitData& data, const TrainOptions& options) {
+  return options.method == TrainOptions::Method::kFull && !AsksForSprings(options) &&
+         ParticleFrames(data, kMostSpringRecordings) > kMostParticleFrames;
 }
 
 FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,

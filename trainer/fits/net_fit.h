@@ -25,14 +25,14 @@ struct FittedNet {
 //      (residual_correlation.h). It stays. Where the options leave open whether dashpots feel the
 //      controllers' velocity, the first body that leaves more than noise, and wants no more
 //      sub-steps, is fitted with the other treatment too, and the better one goes on.
-//   2. If none does, and TriesSingleValues, all kinds are fitted to a part of the data, and judged
+//   2. If none does, and not LeavesOutSingleValues, all kinds are fitted to a part of the data, and
+//   judged
 //      on the rest by free motions (held_back.h). The best one is fitted to all.
 FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
                  const Work& work);
 
-// Whether step 2 fits single values. Of many particles in many frames it does not: that takes
-// hours.
-bool TriesSingleValues(const FitData& data);
+// Whether step 2 is left out because of many particles in many frames: it would take hours.
+bool LeavesOutSingleValues(const FitData& data, const TrainOptions& options);
 
 }  // namespace physpring
 

@@ -212,9 +212,12 @@ TEST(FitDense, TriesSingleValuesOfFewParticlesInFewFrames) {
   FitData data = Swung();
   data.recordings[0].points[0] = Points::Zero(3, 1000);
   data.recordings[0].train_frames = 101;
-  EXPECT_TRUE(TriesSingleValues(data));
+  TrainOptions options;
+  EXPECT_FALSE(LeavesOutSingleValues(data, options));
   data.recordings[0].train_frames = 102;
-  EXPECT_FALSE(TriesSingleValues(data));
+  EXPECT_TRUE(LeavesOutSingleValues(data, options));
+  options.epochs = 3;  // asks for single springs
+  EXPECT_FALSE(LeavesOutSingleValues(data, options));
 }
 
 TEST(FitDense, KeepsTheEffectsThatItIsGiven) {
