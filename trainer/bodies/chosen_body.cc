@@ -37,6 +37,12 @@ SpringMassSystem ChosenBody::System(const Recording& recording) const {
   return ParametersOf(recording).Apply(factors);
 }
 
+ChosenBody ChosenBody::WithOtherVelocity() const {
+  ChosenBody other = *this;
+  other.body.controller_velocity = !body.controller_velocity;
+  return other;
+}
+
 LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
   const Recording recording = OnlyFitFrames(episodes.at(0));

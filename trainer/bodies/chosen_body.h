@@ -18,6 +18,8 @@ struct ChosenBody {
 
   Parameters ParametersOf(const Recording& recording) const;
   SpringMassSystem System(const Recording& recording) const;
+  // The same with the other treatment of the controllers' velocity.
+  ChosenBody WithOtherVelocity() const;
 };
 
 // One step of Levenberg-Marquardt on common factors, under an observer of this gain.

@@ -16,16 +16,16 @@ constexpr int kModes = 14;
 // could not be told from true ones.
 constexpr int kEqualClasses = 30;
 constexpr double kClassJump = 1.01;  // true and superfluous springs may differ in length by 1.5 %
-// The prior's standard deviations: of a mode, and of the difference between classes that are next
-// to each other in an irregular mesh.
+// The prior's standard deviations: of a mode, and of the difference between a class and the one
+// before it whose springs are much like its own.
 constexpr double kMode = 0.5, kNeighbouringClasses = 0.5;
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
-                               const BodyKind& kind, bool hands_apart) {
+                               const BodyKind& kind, const SmoothBody::Options& body) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
   options.class_dashpots = false;
-  options.classes = {kClassJump, kEqualClasses, hands_apart};
+  options.classes = {kClassJump, kEqualClasses, body.hands_apart, body.directions};
   options.modes = SpringModes(start, kModes);
   return options;
 }
@@ -37,8 +37,7 @@ constexpr double kStiffest = 1.8;
 
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
                        const BodyKind& kind, const Options& options)
-    : factors_(start, SmoothOptions(start, recording, kind, options.hands_apart)),
-      options_(options) {
+    : factors_(start, SmoothOptions(start, recording, kind, options)), options_(options) {
   options_.most_rate = std::max(1.0, std::floor(options.most_rate / recording.fps)) * recording.fps;
 }
 
@@ -49,7 +48,8 @@ Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
     if (factors_.kind(i) == Parameters::Kind::kMode) precision(i, i) = 1 / (kMode * kMode);
   }
   const int first = factors_.first_class(), end = first + factors_.classes().lengths;
-  for (int i = first; factors_.classes().irregular && i + 1 < end; ++i) {
+  for (int i = first; i + 1 < end; ++i) {
+    if (!factors_.classes().like_the_last[static_cast<std::size_t>(i + 1 - first)]) continue;
     const double alike =
         1 / (kNeighbouringClasses * std::max(kNeighbouringClasses, std::abs(x[i + 1] - x[i])));
     precision(i, i) += alike;

@@ -20,6 +20,7 @@ class SmoothBody {
   struct Options {
     double most_rate;          // the most sub-steps a second; whole ones a frame, at least one
     bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
+    bool directions = false;   // so are springs of other directions
   };
 
   // `start`: the system at x = 0, whose springs have one loss time.
@@ -30,8 +31,9 @@ class SmoothBody {
   const Parameters& factors() const { return factors_; }
   double most_rate() const { return options_.most_rate; }
   bool hands_apart() const { return options_.hands_apart; }
-  // The prior's precision near x. Classes of an irregular mesh that are next to each other are
-  // about as stiff, but for a few jumps: their differences have a Laplace distribution, as the
+  bool directions() const { return options_.directions; }
+  // The prior's precision near x. Classes whose springs are much alike (spring_classes.h) are about
+  // as stiff, but for a few jumps: their differences have a Laplace distribution, as the
   // normal one that is as steep at x (iteratively reweighted least squares).
   Eigen::MatrixXd Precision(const Eigen::VectorXd& x) const;
 

@@ -2,18 +2,51 @@
 #include "trainer/bodies/spring_classes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace physpring {
 namespace {
 
-constexpr int kMostLengths = 10;  // of classes that jumps tell apart
-constexpr double kWidest = 1.2;   // the longest spring of such a class, relative to its shortest
-constexpr int kMostRanks = 40;    // of the springs of a controller, by nearness
+constexpr int kMostLengths = 10;     // of classes that jumps tell apart
+constexpr double kWidest = 1.2;      // the longest spring of such a class, relative to its shortest
+constexpr int kMostDirections = 60;  // of all lengths together
+constexpr double kParallel = 0.98;   // the least cosine between springs of one direction
+constexpr int kMostRanks = 40;       // of the springs of a controller, by nearness
 
 std::vector<int> SortedByLength(const SpringMassSystem& system, std::vector<int> springs) {
   std::stable_sort(springs.begin(), springs.end(),
                    [&](int i, int j) { return system.rest_length[i] < system.rest_length[j]; });
   return springs;
+}
+
+Eigen::Vector3d DirectionOf(const SpringMassSystem& system, int spring) {
+  const auto [a, b] = system.springs[spring];
+  return (system.position.col(b) - system.position.col(a)).normalized();
+}
+
+// Cuts the classes of these springs, which are in the order of length, into those of one direction
+// each. Nothing changes where that would give too many.
+void CutByDirection(const SpringMassSystem& system, const std::vector<int>& sorted,
+                    SpringClasses* classes) {
+  std::vector<int> first_of;  // of each new class the first spring
+  std::vector<bool> like_the_last;
+  std::vector<int> made(sorted.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const int e = sorted[i];
+    const auto same = std::find_if(first_of.begin(), first_of.end(), [&](int other) {
+      return classes->of_spring[other] == classes->of_spring[e] &&
+             std::abs(DirectionOf(system, other).dot(DirectionOf(system, e))) > kParallel;
+    });
+    made[i] = static_cast<int>(same - first_of.begin());
+    if (same != first_of.end()) continue;
+    like_the_last.push_back(!first_of.empty() &&
+                            classes->of_spring[first_of.back()] == classes->of_spring[e]);
+    first_of.push_back(e);
+    if (first_of.size() > kMostDirections) return;
+  }
+  for (std::size_t i = 0; i < sorted.size(); ++i) classes->of_spring[sorted[i]] = made[i];
+  classes->like_the_last = like_the_last;
+  classes->count = classes->lengths = static_cast<int>(first_of.size());
 }
 
 void AddLengths(const SpringMassSystem& system, const std::vector<int>& springs,
@@ -39,6 +72,8 @@ void AddLengths(const SpringMassSystem& system, const std::vector<int>& springs,
     }
   }
   classes->count = classes->lengths = sorted.empty() ? 0 : last + 1;
+  classes->like_the_last.assign(static_cast<std::size_t>(classes->lengths), classes->irregular);
+  if (options.directions && !classes->irregular) CutByDirection(system, sorted, classes);
 }
 
 void AddHands(const SpringMassSystem& system, const std::vector<int>& springs,

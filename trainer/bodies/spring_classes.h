@@ -16,13 +16,19 @@ struct SpringClassOptions {
   // Springs of controllers have classes apart from those of length: the nearest springs of all
   // controllers are one, the second nearest ones another, and so on.
   bool hands_apart = false;
+  // Springs of a regular mesh that run in other directions are of other classes of length, unless
+  // there are too many of them.
+  bool directions = false;
 };
 
 struct SpringClasses {
   std::vector<int> of_spring;  // 0 <= class < count
   int count = 0;
-  int lengths = 0;         // classes below this one are of length, in its order
+  int lengths = 0;         // classes below this one are of length (and direction), in its order
   bool irregular = false;  // lengths fall into no classes: equally filled ones cut their range
+  // Of each class of length, whether its springs are much like those of the class before: their
+  // lengths differ by little in an irregular mesh, or by nothing where directions differ.
+  std::vector<bool> like_the_last = {};
 };
 
 SpringClasses ClassesOf(const SpringMassSystem& system, const SpringClassOptions& options);

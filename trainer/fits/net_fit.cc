@@ -2,13 +2,11 @@
 #include "trainer/fits/net_fit.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
 #include <vector>
 
 #include "trainer/data/held_back.h"
 #include "trainer/fits/factor_fit.h"
+#include "trainer/fits/smooth_choice.h"
 #include "trainer/fits/smooth_fit.h"
 #include "trainer/fits/spring_fit.h"
 #include "trainer/motion/residual_correlation.h"
@@ -21,44 +19,13 @@ namespace {
 constexpr double kMostParticleFrames = 1e5;
 constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more than these
 constexpr GainSchedule kAllGains{0, 6};
-// The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
-constexpr double kSlowRate = 2500;
-// With a smooth body whose residuals correlate less, nothing else is tried. One that is too slow
-// may leave little more than noise on the fit frames, and far more on another motion.
-constexpr double kSurelyNoise = 0.01;
-// A body of a higher rate, or of more numbers at the hands, must lower the part of the error that
-// is no noise to this share.
-constexpr double kWorthItsCost = 0.6;
 constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kSmoothPart = 0.3, kAllFramesPart = 0.35, kTriedSmooth = 0.4,
                  kTriedStiffnesses = 0.45, kTried = 0.6, kCommon = 0.65;
 
-// A smooth body that is tried: of at most kSlowRate or of any rate; and the parts of the work that
-// its fit ends at, with one treatment of the controllers' velocity and with both.
-struct Try {
-  const char* name;
-  bool stiff, hands_apart;
-  double fitted, with_velocity;
-};
-constexpr std::array<Try, 4> kTries = {
-    {{"smooth body", false, false, 0.05, 0.07},
-     {"smooth body, hands apart", false, true, 0.12, 0.14},
-     {"smooth body, stiff", true, false, 0.2, 0.22},
-     {"smooth body, stiff, hands apart", true, true, 0.28, kSmoothPart}}};
-
 enum class Kind { kSmooth, kStiffnesses, kSprings };
-
-// A smooth body, and how much of its error is no noise.
-struct SmoothTrial {
-  SmoothlyFitted fit;
-  double correlation;  // residual_correlation.h
-  double wrong_by;     // the part of the error that is no noise, m
-  bool limited;        // it would be stiffer or lossier if it might take more sub-steps
-
-  bool HasArrived() const { return correlation < kSurelyNoise && !limited; }
-};
 
 class NetFit {
  public:
@@ -68,8 +35,6 @@ class NetFit {
         data_(data),
         options_(options),
         work_(work),
-        short_(ShortMotions(data, kMostCommonRecordings)),
-        enough_(FitEpisodes(short_, kMostCommonRecordings)),
         episodes_(FitEpisodes(data, kMostCommonRecordings)) {}
 
   FittedNet Run();
@@ -83,10 +48,8 @@ class NetFit {
     return GeometricTrackError(model.System(data_.recordings[0]), episodes_, FrameUse::kFit,
                                FreeMotion(model.body));
   }
-  SmoothTrial Judge(const SmoothlyFitted& fit, const Body& body) const;
-  SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work);
-  SmoothTrial FitSmooth();
-  Kind BestPredictor(const SmoothTrial& smooth) const;
+  SmoothlyChosen FitSmooth();
+  Kind BestPredictor(const SmoothlyChosen& smooth) const;
   ChosenBody WithCommonFactors(const ChosenBody& model, const Work& work) const;
   FittedNet FitSpringsAlone() const;
 
@@ -94,8 +57,6 @@ class NetFit {
   const FitData& data_;
   const TrainOptions& options_;
   const Work& work_;
-  FitData short_;
-  std::vector<Episode> enough_;    // as many fit frames as smooth bodies are tried on
   std::vector<Episode> episodes_;  // all fit frames
 };
 
@@ -125,74 +86,22 @@ bool AsksForSprings(const TrainOptions& options) {
          (options.epochs > 0 || options.optimizer != TrainOptions::Optimizer::kAutomatic);
 }
 
-SmoothTrial NetFit::Judge(const SmoothlyFitted& fit, const Body& body) const {
-  const SpringMassSystem system = fit.System();
-  const double correlation = ResidualCorrelation(system, enough_, FreeMotion(body));
-  const double error = GeometricTrackError(system, enough_, FrameUse::kFit, FreeMotion(body));
-  return {fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
-          fit.body.IsLimited(fit.x)};
-}
-
-ChosenBody WithOtherVelocity(ChosenBody model) {
-  model.body.controller_velocity = !model.body.controller_velocity;
-  return model;
-}
-
-// The trial, or the same body with the other treatment of the controllers' velocity where that
-// leaves less: model_ then has it.
-SmoothTrial NetFit::WithBetterVelocity(const SmoothTrial& trial, const Work& work) {
-  const ChosenBody model = WithOtherVelocity(model_);
-  const SmoothTrial other = Judge(FitOn(trial.fit, model, enough_, options_, work), model.body);
-  if (!(other.wrong_by < trial.wrong_by)) return trial;
-  model_ = model;
-  return other;
-}
-
-// The first smooth body that has arrived, or the best of them. Those of long sub-steps come first,
-// and of each those whose hands follow the law of the object. They differ in which side valleys
-// their fits end in.
-SmoothTrial NetFit::FitSmooth() {
-  const double most = MostRate(options_, data_.recordings[0]), least = std::min(kSlowRate, most);
-  std::optional<SmoothTrial> best;
-  const auto is_better = [&](const SmoothTrial& trial) {
-    if (!best || trial.HasArrived()) return true;
-    const SmoothBody &one = trial.fit.body, &other = best->fit.body;
-    const bool costs_more =
-        one.most_rate() > other.most_rate() || (one.hands_apart() && !other.hands_apart());
-    const double worth = costs_more ? kWorthItsCost : 1;
-    return trial.wrong_by < worth * best->wrong_by;
-  };
-  bool velocity_is_open = HasHands() && !options_.controller_velocity;
-  double from = 0;
-  for (const Try& one : kTries) {
-    const double rate = one.stiff ? most : least;
-    if ((one.stiff && most == least) || (one.hands_apart && !HasHands())) continue;
-    const bool wants_substeps = best && best->limited;  // hands apart do not help such a body
-    if (one.hands_apart && wants_substeps && rate < most) continue;
-    const SmoothTrial trial =
-        Judge(FitSmoothBody(model_, enough_, options_, {rate, one.hands_apart},
-                            work_.Part(one.name, from, one.fitted)),
-              model_.body);
-    if (is_better(trial)) best = trial;
-    if (velocity_is_open && !best->HasArrived() && (!best->limited || rate == most)) {
-      best = WithBetterVelocity(*best,
-                                work_.Part("controllers' velocity", one.fitted, one.with_velocity));
-      velocity_is_open = false;
-    }
-    from = one.with_velocity;
-    if (best->HasArrived()) break;
+// The best smooth body. It is chosen by no more frames than tell, and fitted to all.
+SmoothlyChosen NetFit::FitSmooth() {
+  const FitData some = ShortMotions(data_, kMostCommonRecordings);
+  SmoothlyChosen smooth = ChooseSmoothBody(model_, FitEpisodes(some, kMostCommonRecordings),
+                                           options_, work_.Stretch("smooth", 0, kSmoothPart));
+  model_ = smooth.model;
+  if (ParticleFrames(some, kMostCommonRecordings) < ParticleFrames(data_, kMostCommonRecordings)) {
+    smooth.fit = FitToTheEnd(smooth.fit, model_, episodes_, options_,
+                             work_.Part("smooth body, all frames", kSmoothPart, kAllFramesPart));
   }
-  if (ParticleFrames(short_, kMostCommonRecordings) <
-      ParticleFrames(data_, kMostCommonRecordings)) {
-    const Work on_all = work_.Part("smooth body, all frames", kSmoothPart, kAllFramesPart);
-    best->fit = FitOn(best->fit, model_, episodes_, options_, on_all);
-  }
-  return *best;
+  return smooth;
 }
 
 // What predicts best what is held back; of bodies that predict about as well, the one of the fewest
 // numbers.
-Kind NetFit::BestPredictor(const SmoothTrial& smooth) const {
+Kind NetFit::BestPredictor(const SmoothlyChosen& smooth) const {
   const HeldBackMotion held_back = HoldBackMotion(data_, kMostCommonRecordings);
   const std::vector<Episode> judged = held_back.JudgedEpisodes();
   const std::vector<Episode> fit = FitEpisodes(held_back.fit, kMostCommonRecordings);
@@ -206,8 +115,8 @@ Kind NetFit::BestPredictor(const SmoothTrial& smooth) const {
     least = error;
   };
   const SpringMassSystem tried =
-      FitOn(smooth.fit, model_, fit, options_,
-            work_.Part("trial, smooth body", kAllFramesPart, kTriedSmooth))
+      FitToTheEnd(smooth.fit, model_, fit, options_,
+                  work_.Part("trial, smooth body", kAllFramesPart, kTriedSmooth))
           .System();
   judge(Kind::kSmooth, tried);
   judge(Kind::kStiffnesses,
@@ -236,7 +145,7 @@ FittedNet NetFit::FitSpringsAlone() const {
   ChosenBody model = WithCommonFactors(model_, work_.Stretch("one", 0, compared));
   if (may_choose) {
     const ChosenBody other =
-        WithCommonFactors(WithOtherVelocity(model_), work_.Stretch("other", compared, common));
+        WithCommonFactors(model_.WithOtherVelocity(), work_.Stretch("other", compared, common));
     if (ErrorOf(other) < ErrorOf(model)) model = other;
   }
   return {FitSpringsOf(model, data_, options_, work_.Part("single springs", common, 1)),
@@ -246,7 +155,7 @@ FittedNet NetFit::FitSpringsAlone() const {
 FittedNet NetFit::Run() {
   const bool smooth_only = options_.method == TrainOptions::Method::kSmooth;
   if (AsksForSprings(options_)) return FitSpringsAlone();
-  const SmoothTrial smooth = FitSmooth();
+  const SmoothlyChosen smooth = FitSmooth();
   const SpringMassSystem system = smooth.fit.System();
   if (smooth_only || smooth.correlation < kSurelyNoise || LeavesOutSingleValues(data_, options_)) {
     return {system, model_.body};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fit of a smooth body (bodies/smooth_body.h): Levenberg-Marquardt on its few numbers, until it
-// has arrived, from the soft start of the chosen body, under an observer whose gain falls to 0
-// (observer.h).
+// The fit of a smooth body (bodies/smooth_body.h): Levenberg-Marquardt on its few numbers. A rough
+// fit is quick: it finds a valley, under an observer whose gain falls (observer.h). The fit to the
+// end goes down to the bottom of it. That takes long in a wrong one.
 #ifndef PHYSPRING_TRAINER_FITS_SMOOTH_FIT_H_
 #define PHYSPRING_TRAINER_FITS_SMOOTH_FIT_H_
 
@@ -21,16 +21,20 @@ struct SmoothlyFitted {
   SpringMassSystem System() const { return body.Apply(x); }
 };
 
-// The numbers that fit the episodes best. The contact with the ground starts as chosen, all else as
-// soft as the choice began.
-SmoothlyFitted FitSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                             const TrainOptions& options, const SmoothBody::Options& body,
-                             const Work& work);
+// The body that fits start from: its contact with the ground as chosen, all else as soft as the
+// choice began.
+SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
+                              const SmoothBody::Options& body);
 
-// The same for other episodes of the same object, from those numbers on, by free motions alone.
-SmoothlyFitted FitOn(const SmoothlyFitted& start, const ChosenBody& chosen,
-                     const std::vector<Episode>& episodes, const TrainOptions& options,
-                     const Work& work);
+// Numbers that about fit the episodes, found under an observer of these gains, one after the other.
+SmoothlyFitted FitRoughly(const SmoothlyFitted& start, const std::vector<double>& gains,
+                          const ChosenBody& chosen, const std::vector<Episode>& episodes,
+                          const TrainOptions& options, const Work& work);
+
+// The numbers that fit the episodes best by free motions.
+SmoothlyFitted FitToTheEnd(const SmoothlyFitted& start, const ChosenBody& chosen,
+                           const std::vector<Episode>& episodes, const TrainOptions& options,
+                           const Work& work);
 
 }  // namespace physpring
 

@@ -12,6 +12,8 @@ namespace physpring {
 // Errors that correlate less are noise. Those of true bodies that are networks have -0.01 to 0.04,
 // those of side valleys 0.4 to 0.9.
 inline constexpr double kNoiseCorrelation = 0.1;
+// With a body whose errors correlate less, nothing else is tried.
+inline constexpr double kSurelyNoise = 0.01;
 
 // How much alike a free motion's errors are in a frame and in the next one: their autocorrelation
 // at a lag of one frame, over all points that are seen in both, with a mean of 0 (Box and Jenkins,

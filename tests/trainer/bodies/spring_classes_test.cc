@@ -40,6 +40,43 @@ TEST(SpringClasses, AreEquallyFilledWhereLengthsDoNotJump) {
   EXPECT_EQ(classes.of_spring, (std::vector<int>{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}));
 }
 
+// A square of nodes with a diagonal, whose springs have these lengths: along x twice, along y
+// twice, and the diagonal.
+SpringMassSystem Square(const std::vector<double>& lengths) {
+  Points corners = Points::Zero(3, 4);
+  corners << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0;
+  SpringMassSystem system = Particles(corners, 0.01);
+  const std::vector<std::pair<int, int>> ends = {{0, 1}, {3, 2}, {0, 2}, {3, 1}, {0, 3}};
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    AddSpring(ends[i].first, ends[i].second, 10, lengths[i], 0.1, &system);
+  }
+  return system;
+}
+
+TEST(SpringClasses, MayTellDirectionsOfOneLengthApart) {
+  SpringClassOptions options{1.05, 6};
+  const SpringMassSystem square = Square({1, 1, 1, 1, 1.4});
+  EXPECT_EQ(ClassesOf(square, options).of_spring, (std::vector<int>{0, 0, 0, 0, 1}));
+  EXPECT_EQ(ClassesOf(square, options).like_the_last, (std::vector<bool>{false, false}));
+  options.directions = true;
+  const SpringClasses apart = ClassesOf(square, options);
+  EXPECT_EQ(apart.of_spring, (std::vector<int>{0, 0, 1, 1, 2}));
+  EXPECT_EQ(apart.like_the_last, (std::vector<bool>{false, true, false}));
+  EXPECT_EQ(apart.lengths, 3);
+  EXPECT_EQ(apart.count, 3);
+}
+
+TEST(SpringClasses, DirectionsOfAnIrregularMeshAreNotToldApart) {
+  const SpringMassSystem square = Square({1, 1.04, 1.08, 1.12, 1.25});
+  SpringClassOptions options{1.05, 2};
+  const std::vector<int> by_length = ClassesOf(square, options).of_spring;
+  options.directions = true;
+  const SpringClasses classes = ClassesOf(square, options);
+  EXPECT_TRUE(classes.irregular);
+  EXPECT_EQ(classes.of_spring, by_length);
+  EXPECT_EQ(classes.like_the_last, (std::vector<bool>{true, true}));
+}
+
 TEST(SpringClasses, HandsAreClassedByHowNearTheyAre) {
   const SpringMassSystem star =
       Star({0.01, 0.02, 0.02}, {{0, 0.03}, {1, 0.05}, {0, 0.01}, {1, 0.04}});

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trainer/fits/smooth_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "trainer/bodies/factors.h"
+#include "trainer/motion/residual_correlation.h"
+#include "trainer/motion/track_error.h"
+
+namespace physpring {
+namespace {
+
+// The sub-steps a second of a body that is tried first: a faster one has to be worth its time.
+constexpr double kSlowRate = 2500;
+// One that leaves less in the first part of the motions is fitted to all of them at once.
+constexpr double kPerhapsNoise = 0.05;
+// A body of a higher rate, or of more numbers at the hands, must lower the part of the error that
+// is no noise to this share.
+constexpr double kWorthItsCost = 0.6;
+// One that wants more sub-steps than it may take is worse on another motion than it looks.
+constexpr double kWantsSubsteps = 1.2;
+
+// Parts of the work.
+constexpr double kTriesDone = 0.7, kDirectionsDone = 0.8;
+
+// A smooth body that is tried: of at most kSlowRate or of any rate; and the parts of the work that
+// it ends at, roughly fitted and, if it is, to the end.
+struct Try {
+  const char* name;
+  bool stiff, hands_apart;
+  double roughly, to_the_end;
+};
+constexpr std::array<Try, 4> kTries = {
+    {{"smooth body", false, false, 0.05, 0.2},
+     {"smooth body, hands apart", false, true, 0.25, 0.35},
+     {"smooth body, stiff", true, false, 0.45, 0.55},
+     {"smooth body, stiff, hands apart", true, true, 0.65, kTriesDone}}};
+
+// The gains of the observer, one after the other, under which the first part of the motions shows a
+// smooth body the way, and under which it follows the rest.
+const std::vector<double> kGuidingGains = {0.5, 0.2, 0.1, 0}, kGainsOfTheRest = {0.2, 0.1};
+
+// A smooth body, and how much of its error is no noise.
+struct SmoothTrial {
+  SmoothlyFitted fit;
+  double correlation;  // residual_correlation.h
+  double wrong_by;     // the part of the error that is no noise, m
+  bool limited;        // it wants more sub-steps, and there are bodies that may take them
+
+  bool HasArrived() const { return correlation < kSurelyNoise && !limited; }
+};
+
+// The first part of each motion, which shows smooth bodies the way.
+std::vector<Episode> FirstPart(std::vector<Episode> episodes) {
+  constexpr double kPart = 0.4;
+  for (Episode& one : episodes) {
+    one.frames = std::max(2, 1 + static_cast<int>(std::ceil(kPart * (one.frames - 1))));
+  }
+  return episodes;
+}
+
+class SmoothChoice {
+ public:
+  SmoothChoice(const ChosenBody& model, const std::vector<Episode>& episodes,
+               const TrainOptions& options, const Work& work)
+      : model_(model),
+        recording_(*episodes.at(0).recording),
+        all_(episodes),
+        first_(FirstPart(episodes)),
+        options_(options),
+        work_(work),
+        most_rate_(MostRate(options, recording_)) {}
+
+  SmoothlyChosen Run();
+
+ private:
+  bool HasHands() const { return recording_.controller_count() > 0; }
+  SmoothTrial Judge(const SmoothlyFitted& fit, const Body& body,
+                    const std::vector<Episode>& episodes) const;
+  SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work);
+  SmoothTrial TryRoughly(const SmoothBody::Options& body, const Work& work) const;
+  SmoothTrial ToTheEnd(const SmoothTrial& trial, const Work& work) const;
+  void Consider(const SmoothTrial& trial);
+  void FitBest(const Work& work);
+  void TryDirections(const Work& work);
+  SmoothlyChosen Chosen(const SmoothTrial& trial) const {
+    return {trial.fit, model_, trial.correlation};
+  }
+
+  ChosenBody model_;
+  const Recording& recording_;
+  const std::vector<Episode>& all_;
+  std::vector<Episode> first_;  // the first part, which shows the way
+  const TrainOptions& options_;
+  const Work& work_;
+  double most_rate_;                          // sub-steps a second
+  std::optional<SmoothTrial> best_, fitted_;  // roughly, and to the end
+  bool is_fitted_ = false;                    // whether best_ has been fitted to the end
+};
+
+SmoothTrial SmoothChoice::Judge(const SmoothlyFitted& fit, const Body& body,
+                                const std::vector<Episode>& episodes) const {
+  const SpringMassSystem system = fit.System();
+  const RolloutOptions free = FollowOptions(recording_, body, options_).rollout;
+  const double correlation = ResidualCorrelation(system, episodes, free);
+  const double error = GeometricTrackError(system, episodes, FrameUse::kFit, free);
+  const double next_rate = fit.body.most_rate() + recording_.fps;  // one sub-step more
+  return {fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
+          next_rate <= most_rate_ && fit.body.IsLimited(fit.x)};
+}
+
+// The trial, or the same body with the other treatment of the controllers' velocity where that
+// leaves less: model_ then has it.
+SmoothTrial SmoothChoice::WithBetterVelocity(const SmoothTrial& trial, const Work& work) {
+  const ChosenBody model = model_.WithOtherVelocity();
+  const SmoothTrial other =
+      Judge(FitRoughly(trial.fit, {0}, model, first_, options_, work), model.body, first_);
+  if (!(other.wrong_by < trial.wrong_by)) return trial;
+  model_ = model;
+  return other;
+}
+
+// Whether a trial is better than the best one so far, and worth what it costs.
+bool IsBetter(const SmoothTrial& trial, const SmoothTrial& best) {
+  const SmoothBody &one = trial.fit.body, &other = best.fit.body;
+  const bool costs_more = one.most_rate() > other.most_rate() ||
+                          (one.hands_apart() && !other.hands_apart()) || one.directions();
+  double worth = costs_more ? kWorthItsCost : 1;
+  if (best.limited) worth = trial.limited ? worth : kWantsSubsteps;
+  return trial.wrong_by < worth * best.wrong_by;
+}
+
+// A body roughly fitted to the first part of the motions, which tells the side valleys apart that
+// fits end in.
+SmoothTrial SmoothChoice::TryRoughly(const SmoothBody::Options& body, const Work& work) const {
+  const SmoothlyFitted start = SoftSmoothBody(model_, first_, body);
+  return Judge(FitRoughly(start, kGuidingGains, model_, first_, options_, work), model_.body,
+               first_);
+}
+
+// The trial, fitted to the end. One that is far off in the first part would be lost in the rest
+// without an observer.
+SmoothTrial SmoothChoice::ToTheEnd(const SmoothTrial& trial, const Work& work) const {
+  SmoothlyFitted fit = trial.fit;
+  if (trial.correlation >= kPerhapsNoise) {
+    fit = FitRoughly(fit, kGainsOfTheRest, model_, all_, options_, work.Stretch("rest", 0, 0.3));
+  }
+  fit = FitToTheEnd(fit, model_, all_, options_, work.Stretch("end", 0.3, 1));
+  return Judge(fit, model_.body, all_);
+}
+
+void SmoothChoice::Consider(const SmoothTrial& trial) {
+  if (best_ && !IsBetter(trial, *best_)) return;
+  best_ = trial;
+  is_fitted_ = false;
+}
+
+void SmoothChoice::FitBest(const Work& work) {
+  const SmoothTrial trial = ToTheEnd(*best_, work);
+  if (!fitted_ || trial.HasArrived() || IsBetter(trial, *fitted_)) fitted_ = trial;
+  is_fitted_ = true;
+}
+
+// Directions told apart in the best body, if its mesh has any.
+void SmoothChoice::TryDirections(const Work& work) {
+  const SmoothBody& body = best_->fit.body;
+  const SmoothBody::Options options{body.most_rate(), body.hands_apart(), true};
+  if (SoftSmoothBody(model_, first_, options).body.size() == body.size()) return;
+  Consider(TryRoughly(options, work));
+}
+
+// Bodies of long sub-steps come first, and of each those whose hands follow the law of the object.
+SmoothlyChosen SmoothChoice::Run() {
+  const double least = std::min(kSlowRate, most_rate_);
+  bool velocity_is_open = HasHands() && !options_.controller_velocity;
+  double from = 0;
+  for (const Try& one : kTries) {
+    const double rate = one.stiff ? most_rate_ : least;
+    if ((one.stiff && most_rate_ == least) || (one.hands_apart && !HasHands())) continue;
+    SmoothTrial trial =
+        TryRoughly({rate, one.hands_apart}, work_.Part(one.name, from, one.roughly));
+    if (velocity_is_open && trial.correlation >= kSurelyNoise && !trial.limited) {
+      trial = WithBetterVelocity(trial, work_.Stretch("velocity", one.roughly, one.roughly));
+      velocity_is_open = false;
+    }
+    Consider(trial);
+    if (!is_fitted_ && best_->correlation < kPerhapsNoise && !best_->limited) {
+      FitBest(work_.Part("smooth body, to the end", one.roughly, one.to_the_end));
+      if (fitted_->HasArrived()) return Chosen(*fitted_);
+    }
+    from = one.to_the_end;
+  }
+  if (best_->correlation >= kNoiseCorrelation) {
+    TryDirections(work_.Part("smooth body, directions apart", kTriesDone, kDirectionsDone));
+  }
+  if (!is_fitted_) FitBest(work_.Part("smooth body, to the end", kDirectionsDone, 1));
+  return Chosen(*fitted_);
+}
+
+}  // namespace
+
+SmoothlyChosen ChooseSmoothBody(const ChosenBody& model, const std::vector<Episode>& episodes,
+                                const TrainOptions& options, const Work& work) {
+  return SmoothChoice(model, episodes, options, work).Run();
+}
+
+}  // namespace physpring
