@@ -15,7 +15,7 @@
 namespace physpring {
 namespace {
 
-// Single values are tried for no more particles in frames (held_back.h).
+// For more particles in frames (held_back.h), few smooth bodies are tried, and no single values.
 constexpr double kMostParticleFrames = 1e5;
 constexpr int kMostCommonRecordings = 4;  // smooth bodies are fitted to no more than these
 constexpr GainSchedule kAllGains{0, 6};
@@ -24,6 +24,10 @@ constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the erro
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kSmoothPart = 0.3, kAllFramesPart = 0.35, kTriedSmooth = 0.4,
                  kTriedStiffnesses = 0.45, kTried = 0.6, kCommon = 0.65;
+
+bool HasManyParticles(const FitData& data) {
+  return ParticleFrames(data, kMostSpringRecordings) > kMostParticleFrames;
+}
 
 enum class Kind { kSmooth, kStiffnesses, kSprings };
 
@@ -89,8 +93,9 @@ bool AsksForSprings(const TrainOptions& options) {
 // The best smooth body. It is chosen by no more frames than tell, and fitted to all.
 SmoothlyChosen NetFit::FitSmooth() {
   const FitData some = ShortMotions(data_, kMostCommonRecordings);
-  SmoothlyChosen smooth = ChooseSmoothBody(model_, FitEpisodes(some, kMostCommonRecordings),
-                                           options_, work_.Stretch("smooth", 0, kSmoothPart));
+  SmoothlyChosen smooth =
+      ChooseSmoothBody(model_, FitEpisodes(some, kMostCommonRecordings), options_,
+                       HasManyParticles(data_), work_.Stretch("smooth", 0, kSmoothPart));
   model_ = smooth.model;
   if (ParticleFrames(some, kMostCommonRecordings) < ParticleFrames(data_, kMostCommonRecordings)) {
     smooth.fit = FitToTheEnd(smooth.fit, model_, episodes_, options_,
@@ -179,7 +184,7 @@ FittedNet NetFit::Run() {
 
 bool LeavesOutSingleValues(const FitData& data, const TrainOptions& options) {
   return options.method == TrainOptions::Method::kFull && !AsksForSprings(options) &&
-         ParticleFrames(data, kMostSpringRecordings) > kMostParticleFrames;
+         HasManyParticles(data);
 }
 
 FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,

@@ -21,12 +21,9 @@ struct FittedNet {
 
 // The system of the chosen body that fits the recordings. With --method smooth it is the smooth
 // body. Where the options ask for steps or an optimizer of single springs, it has these. Else:
-//   1. Smooth bodies are fitted, until one surely leaves no more than noise
-//      (residual_correlation.h). It stays. Where the options leave open whether dashpots feel the
-//      controllers' velocity, the first body that leaves more than noise, and wants no more
-//      sub-steps, is fitted with the other treatment too, and the better one goes on.
-//   2. If none does, and not LeavesOutSingleValues, all kinds are fitted to a part of the data, and
-//   judged
+//   1. A smooth body is chosen and fitted (smooth_choice.h). One that surely leaves no more than
+//      noise stays.
+//   2. Else, and not if LeavesOutSingleValues, all kinds are fitted to a part of the data and judged
 //      on the rest by free motions (held_back.h). The best one is fitted to all.
 FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
                  const Work& work);

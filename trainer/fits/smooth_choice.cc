@@ -65,12 +65,13 @@ std::vector<Episode> FirstPart(std::vector<Episode> episodes) {
 class SmoothChoice {
  public:
   SmoothChoice(const ChosenBody& model, const std::vector<Episode>& episodes,
-               const TrainOptions& options, const Work& work)
+               const TrainOptions& options, bool few, const Work& work)
       : model_(model),
         recording_(*episodes.at(0).recording),
         all_(episodes),
         first_(FirstPart(episodes)),
         options_(options),
+        few_(few),
         work_(work),
         most_rate_(MostRate(options, recording_)) {}
 
@@ -95,6 +96,7 @@ class SmoothChoice {
   const std::vector<Episode>& all_;
   std::vector<Episode> first_;  // the first part, which shows the way
   const TrainOptions& options_;
+  bool few_;
   const Work& work_;
   double most_rate_;                          // sub-steps a second
   std::optional<SmoothTrial> best_, fitted_;  // roughly, and to the end
@@ -179,7 +181,7 @@ SmoothlyChosen SmoothChoice::Run() {
   double from = 0;
   for (const Try& one : kTries) {
     const double rate = one.stiff ? most_rate_ : least;
-    if ((one.stiff && most_rate_ == least) || (one.hands_apart && !HasHands())) continue;
+    if ((one.stiff && most_rate_ == least) || (one.hands_apart && (few_ || !HasHands()))) continue;
     SmoothTrial trial =
         TryRoughly({rate, one.hands_apart}, work_.Part(one.name, from, one.roughly));
     if (velocity_is_open && trial.correlation >= kSurelyNoise && !trial.limited) {
@@ -193,7 +195,7 @@ SmoothlyChosen SmoothChoice::Run() {
     }
     from = one.to_the_end;
   }
-  if (best_->correlation >= kNoiseCorrelation) {
+  if (!few_ && best_->correlation >= kNoiseCorrelation) {
     TryDirections(work_.Part("smooth body, directions apart", kTriesDone, kDirectionsDone));
   }
   if (!is_fitted_) FitBest(work_.Part("smooth body, to the end", kDirectionsDone, 1));
@@ -203,8 +205,8 @@ SmoothlyChosen SmoothChoice::Run() {
 }  // namespace
 
 SmoothlyChosen ChooseSmoothBody(const ChosenBody& model, const std::vector<Episode>& episodes,
-                                const TrainOptions& options, const Work& work) {
-  return SmoothChoice(model, episodes, options, work).Run();
+                                const TrainOptions& options, bool few, const Work& work) {
+  return SmoothChoice(model, episodes, options, few, work).Run();
 }
 
 }  // namespace physpring

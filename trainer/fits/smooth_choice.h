@@ -23,8 +23,9 @@ struct SmoothlyChosen {
 // one. Where the options leave open whether dashpots feel the controllers' velocity, the first body
 // that leaves more than noise in the first part, and wants no more sub-steps, is fitted with the
 // other treatment too, and the better one goes on.
+// With `few`, for many particles, bodies do not tell hands or directions apart.
 SmoothlyChosen ChooseSmoothBody(const ChosenBody& model, const std::vector<Episode>& episodes,
-                                const TrainOptions& options, const Work& work);
+                                const TrainOptions& options, bool few, const Work& work);
 
 }  // namespace physpring
 
