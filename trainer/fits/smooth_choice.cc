@@ -53,11 +53,15 @@ struct SmoothTrial {
   bool HasArrived() const { return correlation < kSurelyNoise && !limited; }
 };
 
-// The first part of each motion, which shows smooth bodies the way.
+// The first part of each motion, which shows smooth bodies the way: two fifths of it, or more where
+// these show too few points to tell noise from what is wrong.
 std::vector<Episode> FirstPart(std::vector<Episode> episodes) {
-  constexpr double kPart = 0.4;
+  constexpr double kPart = 0.4, kLeastPoints = 1000;
   for (Episode& one : episodes) {
-    one.frames = std::max(2, 1 + static_cast<int>(std::ceil(kPart * (one.frames - 1))));
+    const int moved = one.frames - 1;
+    const double least = kLeastPoints / std::max(1, one.recording->point_count());
+    const double frames = std::max(std::ceil(kPart * moved), std::ceil(least));
+    one.frames = 1 + std::max(1, static_cast<int>(std::min<double>(moved, frames)));
   }
   return episodes;
 }
