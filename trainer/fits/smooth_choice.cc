@@ -18,8 +18,10 @@ constexpr double kSlowRate = 2500;
 // One that leaves less in the first part of the motions is fitted to all of them at once.
 constexpr double kPerhapsNoise = 0.05;
 // A body of a higher rate, or of more numbers at the hands, must lower the part of the error that
-// is no noise to this share.
-constexpr double kWorthItsCost = 0.6;
+// is no noise to this share; one of more directions to this one.
+constexpr double kWorthItsCost = 0.6, kWorthDirections = 0.8;
+// Bodies that leave more cannot tell how controllers move dashpots.
+constexpr double kLost = 0.5;
 // One that wants more sub-steps than it may take is worse on another motion than it looks.
 constexpr double kWantsSubsteps = 1.2;
 
@@ -132,9 +134,10 @@ SmoothTrial SmoothChoice::WithBetterVelocity(const SmoothTrial& trial, const Wor
 // Whether a trial is better than the best one so far, and worth what it costs.
 bool IsBetter(const SmoothTrial& trial, const SmoothTrial& best) {
   const SmoothBody &one = trial.fit.body, &other = best.fit.body;
-  const bool costs_more = one.most_rate() > other.most_rate() ||
-                          (one.hands_apart() && !other.hands_apart()) || one.directions();
+  const bool costs_more =
+      one.most_rate() > other.most_rate() || (one.hands_apart() && !other.hands_apart());
   double worth = costs_more ? kWorthItsCost : 1;
+  if (one.directions() && !other.directions()) worth = std::min(worth, kWorthDirections);
   if (best.limited) worth = trial.limited ? worth : kWantsSubsteps;
   return trial.wrong_by < worth * best.wrong_by;
 }
@@ -175,7 +178,19 @@ void SmoothChoice::TryDirections(const Work& work) {
   const SmoothBody& body = best_->fit.body;
   const SmoothBody::Options options{body.most_rate(), body.hands_apart(), true};
   if (SoftSmoothBody(model_, first_, options).body.size() == body.size()) return;
-  Consider(TryRoughly(options, work));
+  const bool lost = best_->correlation >= kLost;
+  Consider(TryRoughly(options, work.Stretch("as found", 0, 0.5)));
+  if (!lost || !HasHands() || options_.controller_velocity) return;
+  // the question of the controllers' velocity was asked in vain
+  const ChosenBody found = model_;
+  model_ = model_.WithOtherVelocity();
+  const SmoothTrial other = TryRoughly(options, work.Stretch("other velocity", 0.5, 1));
+  if (!IsBetter(other, *best_)) {
+    model_ = found;
+    return;
+  }
+  best_ = other;
+  is_fitted_ = false;
 }
 
 // Bodies of long sub-steps come first, and of each those whose hands follow the law of the object.
