@@ -47,6 +47,7 @@ const std::vector<double> kGuidingGains = {0.5, 0.2, 0.1, 0}, kGainsOfTheRest = 
 
 // A smooth body, and how much of its error is no noise.
 struct SmoothTrial {
+  ChosenBody model;  // with the treatment of the controllers' velocity that it was fitted with
   SmoothlyFitted fit;
   double correlation;  // residual_correlation.h
   double wrong_by;     // the part of the error that is no noise, m
@@ -85,19 +86,18 @@ class SmoothChoice {
 
  private:
   bool HasHands() const { return recording_.controller_count() > 0; }
-  SmoothTrial Judge(const SmoothlyFitted& fit, const Body& body,
+  SmoothTrial Judge(const ChosenBody& model, const SmoothlyFitted& fit,
                     const std::vector<Episode>& episodes) const;
-  SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work);
-  SmoothTrial TryRoughly(const SmoothBody::Options& body, const Work& work) const;
+  SmoothTrial TryRoughly(const ChosenBody& model, const SmoothlyFitted& start,
+                         const Work& work) const;
+  SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work) const;
   SmoothTrial ToTheEnd(const SmoothTrial& trial, const Work& work) const;
   void Consider(const SmoothTrial& trial);
   void FitBest(const Work& work);
   void TryDirections(const Work& work);
-  SmoothlyChosen Chosen(const SmoothTrial& trial) const {
-    return {trial.fit, model_, trial.correlation};
-  }
+  SmoothlyChosen Chosen() const { return {fitted_->fit, fitted_->model, fitted_->correlation}; }
 
-  ChosenBody model_;
+  ChosenBody model_;  // of the next trial
   const Recording& recording_;
   const std::vector<Episode>& all_;
   std::vector<Episode> first_;  // the first part, which shows the way
@@ -109,26 +109,31 @@ class SmoothChoice {
   bool is_fitted_ = false;                    // whether best_ has been fitted to the end
 };
 
-SmoothTrial SmoothChoice::Judge(const SmoothlyFitted& fit, const Body& body,
+SmoothTrial SmoothChoice::Judge(const ChosenBody& model, const SmoothlyFitted& fit,
                                 const std::vector<Episode>& episodes) const {
   const SpringMassSystem system = fit.System();
-  const RolloutOptions free = FollowOptions(recording_, body, options_).rollout;
+  const RolloutOptions free = FollowOptions(recording_, model.body, options_).rollout;
   const double correlation = ResidualCorrelation(system, episodes, free);
   const double error = GeometricTrackError(system, episodes, FrameUse::kFit, free);
   const double next_rate = fit.body.most_rate() + recording_.fps;  // one sub-step more
-  return {fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
+  return {model, fit, correlation, std::sqrt(std::max(0.0, correlation)) * error,
           next_rate <= most_rate_ && fit.body.IsLimited(fit.x)};
 }
 
+// A body roughly fitted to the first part of the motions, which tells the side valleys apart that
+// fits end in.
+SmoothTrial SmoothChoice::TryRoughly(const ChosenBody& model, const SmoothlyFitted& start,
+                                     const Work& work) const {
+  return Judge(model, FitRoughly(start, kGuidingGains, model, first_, options_, work), first_);
+}
+
 // The trial, or the same body with the other treatment of the controllers' velocity where that
-// leaves less: model_ then has it.
-SmoothTrial SmoothChoice::WithBetterVelocity(const SmoothTrial& trial, const Work& work) {
-  const ChosenBody model = model_.WithOtherVelocity();
+// leaves less.
+SmoothTrial SmoothChoice::WithBetterVelocity(const SmoothTrial& trial, const Work& work) const {
+  const ChosenBody model = trial.model.WithOtherVelocity();
   const SmoothTrial other =
-      Judge(FitRoughly(trial.fit, {0}, model, first_, options_, work), model.body, first_);
-  if (!(other.wrong_by < trial.wrong_by)) return trial;
-  model_ = model;
-  return other;
+      Judge(model, FitRoughly(trial.fit, {0}, model, first_, options_, work), first_);
+  return other.wrong_by < trial.wrong_by ? other : trial;
 }
 
 // Whether a trial is better than the best one so far, and worth what it costs.
@@ -142,23 +147,16 @@ bool IsBetter(const SmoothTrial& trial, const SmoothTrial& best) {
   return trial.wrong_by < worth * best.wrong_by;
 }
 
-// A body roughly fitted to the first part of the motions, which tells the side valleys apart that
-// fits end in.
-SmoothTrial SmoothChoice::TryRoughly(const SmoothBody::Options& body, const Work& work) const {
-  const SmoothlyFitted start = SoftSmoothBody(model_, first_, body);
-  return Judge(FitRoughly(start, kGuidingGains, model_, first_, options_, work), model_.body,
-               first_);
-}
-
 // The trial, fitted to the end. One that is far off in the first part would be lost in the rest
 // without an observer.
 SmoothTrial SmoothChoice::ToTheEnd(const SmoothTrial& trial, const Work& work) const {
+  const ChosenBody& model = trial.model;
   SmoothlyFitted fit = trial.fit;
   if (trial.correlation >= kPerhapsNoise) {
-    fit = FitRoughly(fit, kGainsOfTheRest, model_, all_, options_, work.Stretch("rest", 0, 0.3));
+    fit = FitRoughly(fit, kGainsOfTheRest, model, all_, options_, work.Stretch("rest", 0, 0.3));
   }
-  fit = FitToTheEnd(fit, model_, all_, options_, work.Stretch("end", 0.3, 1));
-  return Judge(fit, model_.body, all_);
+  fit = FitToTheEnd(fit, model, all_, options_, work.Stretch("end", 0.3, 1));
+  return Judge(model, fit, all_);
 }
 
 void SmoothChoice::Consider(const SmoothTrial& trial) {
@@ -173,24 +171,17 @@ void SmoothChoice::FitBest(const Work& work) {
   is_fitted_ = true;
 }
 
-// Directions told apart in the best body, if its mesh has any.
+// Directions told apart in the best body, if its mesh has any. Where that body is lost, the
+// question of the controllers' velocity was asked in vain, and both treatments are tried.
 void SmoothChoice::TryDirections(const Work& work) {
   const SmoothBody& body = best_->fit.body;
-  const SmoothBody::Options options{body.most_rate(), body.hands_apart(), true};
-  if (SoftSmoothBody(model_, first_, options).body.size() == body.size()) return;
+  const SmoothlyFitted start =
+      SoftSmoothBody(model_, first_, {body.most_rate(), body.hands_apart(), true});
+  if (start.body.size() == body.size()) return;
   const bool lost = best_->correlation >= kLost;
-  Consider(TryRoughly(options, work.Stretch("as found", 0, 0.5)));
+  Consider(TryRoughly(model_, start, work.Stretch("as found", 0, 0.5)));
   if (!lost || !HasHands() || options_.controller_velocity) return;
-  // the question of the controllers' velocity was asked in vain
-  const ChosenBody found = model_;
-  model_ = model_.WithOtherVelocity();
-  const SmoothTrial other = TryRoughly(options, work.Stretch("other velocity", 0.5, 1));
-  if (!IsBetter(other, *best_)) {
-    model_ = found;
-    return;
-  }
-  best_ = other;
-  is_fitted_ = false;
+  Consider(TryRoughly(model_.WithOtherVelocity(), start, work.Stretch("other velocity", 0.5, 1)));
 }
 
 // Bodies of long sub-steps come first, and of each those whose hands follow the law of the object.
@@ -201,16 +192,18 @@ SmoothlyChosen SmoothChoice::Run() {
   for (const Try& one : kTries) {
     const double rate = one.stiff ? most_rate_ : least;
     if ((one.stiff && most_rate_ == least) || (one.hands_apart && (few_ || !HasHands()))) continue;
-    SmoothTrial trial =
-        TryRoughly({rate, one.hands_apart}, work_.Part(one.name, from, one.roughly));
+    SmoothTrial trial = TryRoughly(model_, SoftSmoothBody(model_, first_, {rate, one.hands_apart}),
+                                   work_.Part(one.name, from, one.roughly));
     if (velocity_is_open && trial.correlation >= kSurelyNoise && !trial.limited) {
       trial = WithBetterVelocity(trial, work_.Stretch("velocity", one.roughly, one.roughly));
+      model_ = trial.model;
       velocity_is_open = false;
     }
     Consider(trial);
     if (!is_fitted_ && best_->correlation < kPerhapsNoise && !best_->limited) {
-      FitBest(work_.Part("smooth body, to the end", one.roughly, one.to_the_end));
-      if (fitted_->HasArrived()) return Chosen(*fitted_);
+      const Work of_try = work_.Stretch(one.name, one.roughly, one.to_the_end);
+      FitBest(of_try.Part("smooth body, to the end", 0, 1));
+      if (fitted_->HasArrived()) return Chosen();
     }
     from = one.to_the_end;
   }
@@ -218,7 +211,7 @@ SmoothlyChosen SmoothChoice::Run() {
     TryDirections(work_.Part("smooth body, directions apart", kTriesDone, kDirectionsDone));
   }
   if (!is_fitted_) FitBest(work_.Part("smooth body, to the end", kDirectionsDone, 1));
-  return Chosen(*fitted_);
+  return Chosen();
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct SmoothlyChosen {
 // The first smooth body that surely leaves no more than noise of the episodes, or else the best
 // one. Where the options leave open whether dashpots feel the controllers' velocity, the first body
 // that leaves more than noise in the first part, and wants no more sub-steps, is fitted with the
-// other treatment too, and the better one goes on.
+// other treatment too, and the better one goes on; a lost body asks again, with directions apart.
 // With `few`, for many particles, bodies do not tell hands or directions apart.
 SmoothlyChosen ChooseSmoothBody(const ChosenBody& model, const std::vector<Episode>& episodes,
                                 const TrainOptions& options, bool few, const Work& work);
