@@ -56,17 +56,21 @@ struct SmoothTrial {
   bool HasArrived() const { return correlation < kSurelyNoise && !limited; }
 };
 
-// The first part of each motion, which shows smooth bodies the way: two fifths of it, or more where
-// these show too few points to tell noise from what is wrong.
+// The first part of each motion, which shows smooth bodies the way.
 std::vector<Episode> FirstPart(std::vector<Episode> episodes) {
-  constexpr double kPart = 0.4, kLeastPoints = 1000;
+  constexpr double kPart = 0.4;
   for (Episode& one : episodes) {
-    const int moved = one.frames - 1;
-    const double least = kLeastPoints / std::max(1, one.recording->point_count());
-    const double frames = std::max(std::ceil(kPart * moved), std::ceil(least));
-    one.frames = 1 + std::max(1, static_cast<int>(std::min<double>(moved, frames)));
+    one.frames = std::max(2, 1 + static_cast<int>(std::ceil(kPart * (one.frames - 1))));
   }
   return episodes;
+}
+
+// Whether they show enough points to tell noise from what is wrong.
+bool TellNoise(const std::vector<Episode>& episodes) {
+  constexpr double kLeastPoints = 1000;
+  double points = 0;
+  for (const Episode& one : episodes) points += (one.frames - 1.0) * one.recording->point_count();
+  return points >= kLeastPoints;
 }
 
 class SmoothChoice {
@@ -77,6 +81,7 @@ class SmoothChoice {
         recording_(*episodes.at(0).recording),
         all_(episodes),
         first_(FirstPart(episodes)),
+        judged_(TellNoise(first_) ? first_ : all_),
         options_(options),
         few_(few),
         work_(work),
@@ -100,7 +105,8 @@ class SmoothChoice {
   ChosenBody model_;  // of the next trial
   const Recording& recording_;
   const std::vector<Episode>& all_;
-  std::vector<Episode> first_;  // the first part, which shows the way
+  std::vector<Episode> first_;          // the first part, which shows the way
+  const std::vector<Episode>& judged_;  // what trials are compared by
   const TrainOptions& options_;
   bool few_;
   const Work& work_;
@@ -121,10 +127,14 @@ SmoothTrial SmoothChoice::Judge(const ChosenBody& model, const SmoothlyFitted& f
 }
 
 // A body roughly fitted to the first part of the motions, which tells the side valleys apart that
-// fits end in.
+// fits end in; of few points to all.
 SmoothTrial SmoothChoice::TryRoughly(const ChosenBody& model, const SmoothlyFitted& start,
                                      const Work& work) const {
-  return Judge(model, FitRoughly(start, kGuidingGains, model, first_, options_, work), first_);
+  SmoothlyFitted fit = FitRoughly(start, kGuidingGains, model, first_, options_, work);
+  if (&judged_ != &first_) {
+    fit = FitRoughly(fit, {0}, model, judged_, options_, work.Stretch("all", 1, 1));
+  }
+  return Judge(model, fit, judged_);
 }
 
 // The trial, or the same body with the other treatment of the controllers' velocity where that
@@ -132,7 +142,7 @@ SmoothTrial SmoothChoice::TryRoughly(const ChosenBody& model, const SmoothlyFitt
 SmoothTrial SmoothChoice::WithBetterVelocity(const SmoothTrial& trial, const Work& work) const {
   const ChosenBody model = trial.model.WithOtherVelocity();
   const SmoothTrial other =
-      Judge(model, FitRoughly(trial.fit, {0}, model, first_, options_, work), first_);
+      Judge(model, FitRoughly(trial.fit, {0}, model, judged_, options_, work), judged_);
   return other.wrong_by < trial.wrong_by ? other : trial;
 }
 
