@@ -160,7 +160,24 @@ def hand_path(time, random, amplitude):
     return amplitude * ramp[:, None] * path
 
 
-def simulate(system, fps, paths):
+class NoEffect:
+    """What a network does besides springs, gravity and linear drag: nothing. Subclasses add to it."""
+
+    delay = 0.0  # how much later the hands move than the recording says, s
+
+    def start(self, system):
+        """Before the first step, with the arrays of system_of."""
+
+    def tension(self, time, step, length, stretch, rate):
+        """Tension of each spring besides k stretch + c rate, N."""
+        return 0
+
+    def force(self, time, x, v):
+        """Forces on the points, (N, 3) N."""
+        return 0
+
+
+def simulate(system, fps, paths, effect=NoEffect()):
     """Positions in each frame and the controllers' (T, N, 3), (T, C, 3)."""
     n, springs = len(system["points"]), system["springs"]
     rows = np.arange(len(springs))
@@ -168,27 +185,33 @@ def simulate(system, fps, paths):
         (np.repeat([1.0, -1.0], len(springs)), (np.tile(rows, 2), springs.T.ravel())),
         shape=(len(springs), n + len(system["controllers"])))
     on_nodes = ends[:, :n].T.tocsr()
+    effect.start(system)
     x, v = system["points"].copy(), np.zeros((n, 3))
     frames = int(SECONDS * fps)
     substeps = int(round(1 / fps / STEP))
     step = 1 / fps / substeps
     times = np.arange(frames * substeps + 1) * step
-    hands = np.stack([path(times) for path in paths])[system["owner"]]  # (C, steps, 3)
+
+    def hands_at(times):
+        return np.stack([path(times) for path in paths])[system["owner"]]  # (C, steps, 3)
+
+    recorded, hands = hands_at(times), hands_at(np.maximum(times - effect.delay, 0))
     k, c, rest = system["stiffness"], system["dashpot"], system["length"]
     points, controllers = [], []
     for i in range((frames - 1) * substeps + 1):
-        hand = system["controllers"] + hands[:, i]
         if i % substeps == 0:
             points.append(x.copy())
-            controllers.append(hand)
+            controllers.append(system["controllers"] + recorded[:, i])
+        hand = system["controllers"] + hands[:, i]
         # MuJoCo's mocap bodies, and these hands, have no velocity
         d = ends @ np.concatenate([x, hand])
         length = np.linalg.norm(d, axis=1)
         u = d / length[:, None]
         rate = np.einsum("ij,ij->i", ends @ np.concatenate([v, 0 * hand]), u)
-        force = -(k * (length - rest) + c * rate)
-        a = (on_nodes @ (force[:, None] * u)) / system["mass"][:, None] + GRAVITY
-        v = (v + step * a) * np.exp(-DRAG * step)
+        tension = k * (length - rest) + c * rate
+        tension = tension + effect.tension(times[i], step, length, length - rest, rate)
+        force = on_nodes @ (-tension[:, None] * u) + effect.force(times[i], x, v)
+        v = (v + step * (force / system["mass"][:, None] + GRAVITY)) * np.exp(-DRAG * step)
         x = x + step * v
     return np.array(points), np.array(controllers)
 

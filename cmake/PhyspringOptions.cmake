@@ -15,7 +15,11 @@ set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)  # an installed program still finds li
 
 add_library(physpring_options INTERFACE)
 target_compile_features(physpring_options INTERFACE cxx_std_20)
-target_compile_definitions(physpring_options INTERFACE PHYSPRING_VERSION="${PROJECT_VERSION}")
+target_compile_definitions(physpring_options INTERFACE
+  PHYSPRING_VERSION="${PROJECT_VERSION}"
+  # Eigen cuts sums of matrix products to the processor's caches: with fixed sizes every machine
+  # gives the same bits
+  EIGEN_NO_CPUID)
 target_include_directories(physpring_options INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(physpring_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast

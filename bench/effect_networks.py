@@ -1,0 +1,275 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Spring networks that lack something: does a diagnosis name it?
+
+For each case it writes CASE_train.npz and CASE_eval.npz, two motions of one body that has an effect
+which the recordings do not tell of, and a line of key.json that does. Of four cases one has none.
+The simulator is that of clean_networks.py, so neither PhySPRING's nor MuJoCo's. An effect is made
+stronger or weaker until it moves the body by 8 to 40 mm in the mean.
+"""
+
+import argparse
+import json
+import pathlib
+
+import numpy as np
+
+import clean_networks
+from clean_networks import Body, NoEffect, bowed, corner, end, grid, scatter, upright
+
+LEAST, MOST = 0.008, 0.04  # m by which an effect moves the body in the mean
+
+
+def bodies(random):
+    left, right = end(0, -1, 0.012), end(0, 1, 0.012)
+    ell = [p for p in grid((9, 9, 2), 0.024) if p[0] < 0.06 or p[1] < 0.06]
+    cross = [p for p in grid((11, 11, 1), 0.026, 0.003, random)
+             if min(abs(p[0] - 0.13), abs(p[1] - 0.13)) < 0.04]
+    wedge = scatter(lambda p: abs(p[1]) < 0.05 * (0.5 - p[2] / 0.08), [0.12, 0.05, 0.04], 80, 0.019,
+                    random)
+    angle, radius = np.meshgrid(np.linspace(0, np.pi / 2, 10), np.arange(0.07, 0.2, 0.021))
+    fan = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle], -1).reshape(-1, 3)
+    along, around = np.meshgrid(np.arange(12) * 0.025, 2 * np.pi * np.arange(8) / 8)
+    tube = np.stack([along, 0.035 * np.cos(around), 0.035 * np.sin(around)], -1).reshape(-1, 3)
+    ladder = [p for p in grid((19, 5, 1), 0.018) if p[1] in (0, 0.072) or round(p[0] / 0.018) % 3 == 0]
+    saddle = grid((9, 9, 1), 0.028, 0.004, random)
+    middle = saddle - saddle.mean(axis=0)
+    saddle[:, 2] += 3 * (middle[:, 0] ** 2 - middle[:, 1] ** 2)
+    return {
+        "ell": Body(upright(np.array(ell)), [end(0, -1, 0.03)], 0.045, 4, 50),
+        "cross": Body(upright(bowed(np.array(cross))), [end(2, 1, 0.02)], 0.058, 3, 40),
+        "wedge": Body(wedge, [left, right], 0.055, 3, 60),
+        "fan": Body(bowed(fan), [corner(1, -1, 0.04), corner(-1, 1, 0.04)], 0.052, 3, 30),
+        "tube": Body(tube, [left, right], 0.06, 3, 50),
+        "ladder": Body(bowed(np.array(ladder)), [left, right], 0.042, 4, 60),
+        "saddle": Body(saddle, [corner(-1, -1, 0.04), corner(1, 1, 0.04)], 0.064, 3, 30),
+    }
+
+
+class Wind(NoEffect):
+    name = "air_drag"
+
+    def __init__(self, random, strength):
+        self.drag = 0.02 * strength  # kg/m of the whole body
+        direction = random.normal(size=3) * [1, 1, 0.3]
+        self.wind = random.uniform(1.5, 3) * direction / np.linalg.norm(direction)
+        self.truth = {"drag_kg_per_m": self.drag, "wind_m_per_s": list(self.wind)}
+
+    def force(self, time, x, v):
+        u = v - self.wind
+        return -self.drag / len(x) * np.linalg.norm(u, axis=1, keepdims=True) * u
+
+
+class Payload(NoEffect):
+    name = "mass_distribution"
+
+    def __init__(self, random, strength):
+        self.share, self.place = 0.2 * strength, random.integers(1 << 20)
+
+    def start(self, system):
+        away = np.linalg.norm(system["points"][:, None] - system["controllers"], axis=2).min(axis=1)
+        far = np.flatnonzero(away > np.median(away))
+        place = far[self.place % len(far)]
+        added = self.share * system["mass"].sum()
+        system["mass"] = system["mass"].copy()
+        system["mass"][place] += added
+        self.truth = {"mass_kg": added, "place_m": system["points"][place].tolist()}
+
+
+class TiltedGravity(NoEffect):
+    name = "gravity_direction"
+
+    def __init__(self, random, strength):
+        tilt, way = 0.1 * strength, random.uniform(0, 2 * np.pi)
+        there = 9.81 * np.array([np.sin(tilt) * np.cos(way), np.sin(tilt) * np.sin(way), -np.cos(tilt)])
+        self.more = there - clean_networks.GRAVITY
+        self.truth = {"tilt_rad": tilt, "way_rad": way}
+
+    def start(self, system):
+        self.mass = system["mass"][:, None]
+
+    def force(self, time, x, v):
+        return self.mass * self.more
+
+
+class Tether(NoEffect):
+    name = "tether"
+
+    def __init__(self, random, strength):
+        self.stiffness, self.place = 4 * strength, random.integers(1 << 20)
+
+    def start(self, system):
+        away = np.linalg.norm(system["points"][:, None] - system["controllers"], axis=2).min(axis=1)
+        far = np.flatnonzero(away > np.median(away))
+        self.node = far[self.place % len(far)]
+        self.anchor = system["points"][self.node].copy()
+        self.truth = {"stiffness_n_per_m": self.stiffness, "place_m": self.anchor.tolist()}
+
+    def force(self, time, x, v):
+        force = np.zeros_like(x)
+        force[self.node] = self.stiffness * (self.anchor - x[self.node])
+        return force
+
+
+class LateHands(NoEffect):
+    name = "control_latency"
+
+    def __init__(self, random, strength):
+        self.delay = 0.05 * strength
+        self.truth = {"latency_s": self.delay}
+
+
+class OfSprings(NoEffect):
+    def start(self, system):
+        self.k, self.rest = system["stiffness"], system["length"]
+        self.state = np.zeros(len(self.rest))
+
+
+class Yield(OfSprings):
+    name = "yield"
+
+    def __init__(self, random, strength):
+        self.strain = 0.06 / strength
+        self.truth = {"yield_strain": self.strain}
+
+    def tension(self, time, step, length, stretch, rate):
+        elastic = np.clip(stretch - self.state, -self.strain * self.rest, self.strain * self.rest)
+        self.state = stretch - elastic
+        return -self.k * self.state
+
+
+class Friction(OfSprings):
+    name = "dry_friction"
+
+    def __init__(self, random, strength):
+        self.strain = 0.02 * strength
+        self.truth = {"slip_strain": self.strain}
+
+    def tension(self, time, step, length, stretch, rate):
+        self.state = np.clip(self.state + step * rate, -self.strain * self.rest,
+                             self.strain * self.rest)
+        return self.k * self.state
+
+
+class Stiffening(OfSprings):
+    name = "stiffening"
+
+    def __init__(self, random, strength):
+        self.ratio = 60 * strength
+        self.truth = {"cubic_stiffness_ratio": self.ratio}
+
+    def tension(self, time, step, length, stretch, rate):
+        return self.ratio * self.k * stretch ** 3 / self.rest ** 2
+
+
+class Slack(OfSprings):
+    name = "tension_only"
+
+    def __init__(self, random, strength):
+        self.share = min(1, 0.6 * strength)
+        self.truth = {"slack_share": self.share}
+
+    def tension(self, time, step, length, stretch, rate):
+        return self.share * self.k * np.maximum(-stretch, 0)
+
+
+class Relaxation(OfSprings):
+    name = "viscoelastic"
+
+    def __init__(self, random, strength):
+        self.share, self.time = min(0.8, 0.4 * strength), random.uniform(0.15, 0.5)
+        self.truth = {"relaxing_share": self.share, "relaxation_time_s": self.time}
+
+    def tension(self, time, step, length, stretch, rate):
+        self.state += step * (rate - self.state / self.time)
+        return self.share * self.k * (self.state - stretch)
+
+
+class Both(NoEffect):
+    def __init__(self, one, other):
+        self.parts, self.name = (one, other), f"{one.name} {other.name}"
+        self.delay = one.delay + other.delay
+
+    def start(self, system):
+        for part in self.parts:
+            part.start(system)
+        self.truth = {part.name: part.truth for part in self.parts}
+
+    def tension(self, *args):
+        return sum(part.tension(*args) for part in self.parts)
+
+    def force(self, *args):
+        return sum(part.force(*args) for part in self.parts)
+
+
+EFFECTS = [Wind, Payload, TiltedGravity, Tether, LateHands, Yield, Friction, Stiffening, Slack,
+           Relaxation]
+
+
+def write_case(folder, case, body, kind, random, amplitude):
+    """Two motions of the body with the effect; returns the line of key.json, None if none fits."""
+    state = random.bit_generator.state
+
+    def motions(effect):
+        random.bit_generator.state = state
+        system = clean_networks.system_of(body, random)
+        result = []
+        for _ in ("train", "eval"):
+            seeds = [random.integers(1 << 30) for _ in body.grasps]
+            paths = [lambda time, seed=seed: clean_networks.hand_path(
+                time, np.random.default_rng(seed), amplitude) for seed in seeds]
+            result.append(clean_networks.simulate(dict(system), body.fps, paths, effect))
+        return result
+
+    clean = motions(NoEffect())
+    strength, by, effect, result = 1.0, [0.0, 0.0], None, clean
+    own = random.integers(1 << 30)
+    for _ in range(6 if kind is not None else 0):
+        with np.errstate(all="ignore"):
+            effect = kind(np.random.default_rng(own), strength)
+            result = motions(effect)
+        by = [float(np.linalg.norm(a - b, axis=2).mean())
+              for (a, _), (b, _) in zip(result, clean)]
+        if np.isfinite(by[0]) and LEAST <= min(by) and max(by) <= 2 * MOST:
+            break
+        strength *= 2 if np.isfinite(by[0]) and min(by) < LEAST else 0.6
+    else:
+        if kind is not None:
+            return None
+    for motion, (points, controllers) in zip(("train", "eval"), result):
+        clean_networks.write_recording(folder / f"{case}_{motion}.npz", body, points, controllers,
+                                       random)
+    return {"effect": effect.name if effect else "none", "truth": effect.truth if effect else {},
+            "mean_displacement_due_to_effect_m": by}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("output", type=pathlib.Path, help="folder")
+    parser.add_argument("--cases", type=int, default=40)
+    parser.add_argument("--pairs", action="store_true", help="two effects at once")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--amplitude", type=float, default=0.012, help="of the hands, m")
+    args = parser.parse_args()
+    args.output.mkdir(parents=True, exist_ok=True)
+    order = np.random.default_rng(args.seed)
+    key, names = {}, list(bodies(order))
+    effects = [EFFECTS[i % len(EFFECTS)] for i in range(args.cases)]
+    order.shuffle(effects)
+    for number in range(args.cases):
+        random = np.random.default_rng([args.seed, number])
+        name = names[number % len(names)]
+        kind = None if number % 4 == 3 else effects[number]
+        if args.pairs:
+            one, other = random.choice(len(EFFECTS), 2, replace=False)
+            kind = lambda r, s, one=one, other=other: Both(EFFECTS[one](r, s), EFFECTS[other](r, s))
+        case = f"{number:02d}_{name}"
+        line = write_case(args.output, case, bodies(random)[name], kind, random, args.amplitude)
+        print(case, line and (line["effect"], line["mean_displacement_due_to_effect_m"]), flush=True)
+        if line is not None:
+            key[case] = {"object": name, **line}
+    (args.output / "key.json").write_text(json.dumps(key, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
