@@ -206,41 +206,51 @@ EFFECTS = [Wind, Payload, TiltedGravity, Tether, LateHands, Yield, Friction, Sti
            Relaxation]
 
 
-def write_case(folder, case, body, kind, random, amplitude):
-    """Two motions of the body with the effect; returns the line of key.json, None if none fits."""
-    state = random.bit_generator.state
+def strong_enough(kind, seed, simulate):
+    """The effect, and two motions with and without it, m by which it moves them; or None."""
+    clean = [simulate(motion, NoEffect()) for motion in (0, 1)]
+    if kind is None:
+        return None, clean, [0.0, 0.0]
 
-    def motions(effect):
-        random.bit_generator.state = state
-        system = clean_networks.system_of(body, random)
-        result = []
-        for _ in ("train", "eval"):
-            seeds = [random.integers(1 << 30) for _ in body.grasps]
-            paths = [lambda time, seed=seed: clean_networks.hand_path(
-                time, np.random.default_rng(seed), amplitude) for seed in seeds]
-            result.append(clean_networks.simulate(dict(system), body.fps, paths, effect))
-        return result
+    def moved_by(motion, points):
+        return float(np.linalg.norm(points - clean[motion][0], axis=2).mean())
 
-    clean = motions(NoEffect())
-    strength, by, effect, result = 1.0, [0.0, 0.0], None, clean
-    own = random.integers(1 << 30)
-    for _ in range(6 if kind is not None else 0):
+    strength = 1.0
+    for _ in range(5):
+        effect = kind(np.random.default_rng(seed), strength)
         with np.errstate(all="ignore"):
-            effect = kind(np.random.default_rng(own), strength)
-            result = motions(effect)
-        by = [float(np.linalg.norm(a - b, axis=2).mean())
-              for (a, _), (b, _) in zip(result, clean)]
-        if np.isfinite(by[0]) and LEAST <= min(by) and max(by) <= 2 * MOST:
-            break
-        strength *= 2 if np.isfinite(by[0]) and min(by) < LEAST else 0.6
-    else:
-        if kind is not None:
-            return None
-    for motion, (points, controllers) in zip(("train", "eval"), result):
-        clean_networks.write_recording(folder / f"{case}_{motion}.npz", body, points, controllers,
+            fitted = simulate(0, effect)
+        by = moved_by(0, fitted[0])
+        if LEAST <= by <= MOST:
+            other = simulate(1, effect)
+            return effect, [fitted, other], [by, moved_by(1, other[0])]
+        strength *= 2 if by < LEAST else 0.6
+    return None
+
+
+def write_case(folder, case, body, kinds, random, amplitude):
+    """Two motions of the body with the first of these effects that moves it; its line of key.json."""
+    system = clean_networks.system_of(body, random)
+    seeds = [[random.integers(1 << 30) for _ in body.grasps] for _ in range(2)]
+
+    def simulate(motion, effect):
+        paths = [lambda time, seed=seed: clean_networks.hand_path(
+            time, np.random.default_rng(seed), amplitude) for seed in seeds[motion]]
+        return clean_networks.simulate(dict(system), body.fps, paths, effect)
+
+    found = (strong_enough(kind, random.integers(1 << 30), simulate) for kind in kinds)
+    effect, motions, by = next(one for one in found if one is not None)
+    for name, (points, controllers) in zip(("train", "eval"), motions):
+        clean_networks.write_recording(folder / f"{case}_{name}.npz", body, points, controllers,
                                        random)
     return {"effect": effect.name if effect else "none", "truth": effect.truth if effect else {},
             "mean_displacement_due_to_effect_m": by}
+
+
+def pair_of(random):
+    one, other = random.choice(len(EFFECTS), 2, replace=False)
+    return lambda random, strength: Both(EFFECTS[one](random, strength),
+                                         EFFECTS[other](random, strength))
 
 
 def main():
@@ -253,22 +263,18 @@ def main():
     args = parser.parse_args()
     args.output.mkdir(parents=True, exist_ok=True)
     order = np.random.default_rng(args.seed)
-    key, names = {}, list(bodies(order))
-    effects = [EFFECTS[i % len(EFFECTS)] for i in range(args.cases)]
-    order.shuffle(effects)
+    names, key = list(bodies(order)), {}
     for number in range(args.cases):
         random = np.random.default_rng([args.seed, number])
         name = names[number % len(names)]
-        kind = None if number % 4 == 3 else effects[number]
-        if args.pairs:
-            one, other = random.choice(len(EFFECTS), 2, replace=False)
-            kind = lambda r, s, one=one, other=other: Both(EFFECTS[one](r, s), EFFECTS[other](r, s))
         case = f"{number:02d}_{name}"
-        line = write_case(args.output, case, bodies(random)[name], kind, random, args.amplitude)
-        print(case, line and (line["effect"], line["mean_displacement_due_to_effect_m"]), flush=True)
-        if line is not None:
-            key[case] = {"object": name, **line}
-    (args.output / "key.json").write_text(json.dumps(key, indent=1) + "\n")
+        kinds = [None] if number % 4 == 3 else list(order.permutation(EFFECTS))
+        if args.pairs:
+            kinds = [pair_of(random) for _ in range(10)]
+        line = write_case(args.output, case, bodies(random)[name], kinds, random, args.amplitude)
+        key[case] = {"object": name, **line}
+        print(case, line["effect"], line["mean_displacement_due_to_effect_m"], flush=True)
+    (args.output / "key.json").write_text(json.dumps(key, indent=1, default=float) + "\n")
 
 
 if __name__ == "__main__":

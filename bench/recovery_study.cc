@@ -89,7 +89,6 @@ Json Run(const Case& one) {
   const MadeRecordings made = MakeWithEffect(one.body, one.effect, one.noise, seed);
   DiagnosisOptions options;
   options.most_effects = 1;
-  options.train_anew = false;  // which effect it is does not depend on it
   const std::clock_t begin = std::clock();
   const Diagnosis diagnosis = Diagnose(TwinOf(made.fit), {made.fit}, {made.other}, options);
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

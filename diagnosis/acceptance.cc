@@ -14,18 +14,15 @@ constexpr Eigen::Index kFreeForm = 20;  // what has more parameters is a free fo
 constexpr double kStrong = 0.7, kHopeless = 4;
 constexpr double kLeastScore = 0.05;  // the least score of a trace, as a part of the best one
 constexpr double kNear = 1.25;  // the largest error that is near, times that of the chosen fit
-// Part of the error above the noise that an effect must explain with common factors alone, where
-// single springs could do without it.
-constexpr double kSimplyExplained = 0.8;
 constexpr int kSimplestDraws = 1000;
 
 }  // namespace
 
 bool IsExplained(double error, double noise_floor) { return error < kExplained * noise_floor; }
 
-bool NothingIsLeft(int accepted, double common_error, double accepted_error, double noise_floor) {
-  return accepted == 0 ? IsExplained(common_error, noise_floor)
-                       : accepted_error < kExplainedByEffects * noise_floor;
+bool NothingIsLeft(int accepted, double error, double noise_floor) {
+  return accepted == 0 ? IsExplained(error, noise_floor)
+                       : error < kExplainedByEffects * noise_floor;
 }
 
 bool IsFreeForm(Eigen::Index parameters) { return parameters > kFreeForm; }
@@ -69,26 +66,6 @@ std::string WhyNotWorthIt(const BootstrapResult& gain, double without, const Thr
 }
 
 bool IsNear(double error, double chosen_error) { return error < kNear * chosen_error; }
-
-bool IsAccepted(const PairedErrors& common, const PairedErrors& springs, Eigen::Index parameters,
-                const Threshold& threshold) {
-  if (common.with >= common.without) return false;
-  Threshold simply = threshold;
-  simply.least_gain = kSimplyExplained;
-  const bool without_springs =
-      !IsFreeForm(parameters) && IsWorthIt(common.gain, common.without, simply) &&
-      springs.with < springs.without + threshold.least_noise * threshold.noise_floor;
-  return without_springs || IsWorthIt(springs.gain, springs.without, threshold);
-}
-
-std::string WhyNotAccepted(const PairedErrors& common, const PairedErrors& springs,
-                           const Threshold& threshold) {
-  if (common.with >= common.without) {
-    return "it predicts held-out frames no better than common factors without it";
-  }
-  return fmt::format("held out {:.2f} mm without it, {:.2f} mm with it: {}", 1e3 * springs.without,
-                     1e3 * springs.with, WhyNotWorthIt(springs.gain, springs.without, threshold));
-}
 
 std::size_t ChooseSimplest(const std::vector<Scored>& fits, int block, std::uint64_t seed) {
   const auto least = std::min_element(

@@ -21,9 +21,8 @@ inline constexpr double kExplained = 1.25;
 // noise.
 bool IsExplained(double error, double noise_floor);
 
-// Whether there is nothing to look for: by the error without a new effect, or, once `accepted`
-// effects were found, by the error with them.
-bool NothingIsLeft(int accepted, double common_error, double accepted_error, double noise_floor);
+// Whether there is nothing to look for, by the error with those effects that were accepted.
+bool NothingIsLeft(int accepted, double error, double noise_floor);
 
 // Whether an effect of so many parameters takes the shape of others. It does not compete with them.
 bool IsFreeForm(Eigen::Index parameters);
@@ -62,22 +61,6 @@ std::string WhyNotWorthIt(const BootstrapResult& gain, double without, const Thr
 
 // Whether another effect came so near to the chosen one that the next search is made beside each.
 bool IsNear(double error, double chosen_error);
-
-// Two fits that are compared: errors and the gain of the one with the effect.
-struct PairedErrors {
-  double without, with;
-  BootstrapResult gain;
-};
-
-// Whether the effect is accepted. `common`: with common factors alone; `springs`: with single
-// springs fitted, too, where that is better. Hundreds of springs may bend to what a few parameters
-// explain: so it is accepted also if it explains nearly all with common factors alone, and single
-// springs without it predict no better.
-bool IsAccepted(const PairedErrors& common, const PairedErrors& springs, Eigen::Index parameters,
-                const Threshold& threshold);
-// Why an effect that is not accepted is not, in words.
-std::string WhyNotAccepted(const PairedErrors& common, const PairedErrors& springs,
-                           const Threshold& threshold);
 
 // A fit of so many parameters with its errors on held-out frames, one after the other, and their
 // mean.

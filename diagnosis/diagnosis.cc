@@ -176,7 +176,7 @@ void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
   result->gain = GainOf(fitting, seed, before.held, accepted.held);
   result->effects = NewEffects(accepted, known);
   if (result->effects.empty()) return;
-  result->certainty = CertaintyOf(fitting, findings.common.descent);
+  result->certainty = CertaintyOf(fitting, findings.accepted.descent);
   result->certainty.erase(result->certainty.begin(),
                           result->certainty.end() - EffectValueCount(result->effects));
 }

@@ -41,7 +41,6 @@ struct DiagnosisOptions {
   int threads = 1;
   std::uint64_t seed = 0;
   int most_effects = 3;       // so many are accepted at most; at least 1
-  bool train_anew = true;     // step 6
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
   // What an effect must explain at least: a part of the error above the noise floor, and a part of
   // the noise floor.

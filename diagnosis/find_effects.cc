@@ -9,21 +9,20 @@
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/effect_search.h"
-#include "diagnosis/trained_fit.h"
+#include "diagnosis/smooth_refit.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kSpringSteps = 10;  // steps of Gauss-Newton after an effect is found
+constexpr std::size_t kRefined = 4;  // so many effects of a search are fitted with smooth bodies
 constexpr int kDraws = 2000;
 constexpr double kBlock = 0.2;  // s, a block of the bootstrap
 
 // Parts of the work that are done: in the loop, after the refits without an effect; in a round,
-// after the search, after what was chosen is fitted once more, and after single springs are fitted.
-// The training takes the rest.
-constexpr double kCommonPart = 0.2, kFollowPart = 0.45, kSearchPart = 0.5, kTrainingPart = 0.65;
+// after the search. Refits with smooth bodies take the rest.
+constexpr double kDeclaredPart = 0.2, kSearchPart = 0.6;
 
 // What stays the same in all rounds.
 struct Inquiry {
@@ -32,13 +31,10 @@ struct Inquiry {
   const DiagnosisOptions& options;
   std::vector<const Effect*> effects;  // those that may be missing
 
-  // Whether single springs are refitted, too.
+  // Whether bodies may become smooth ones; else they hardly move.
   bool open() const { return !fitting.bodies()[0].trusted; }
   BootstrapResult Gain(const Verdict& without, const Verdict& with) const {
     return GainOf(fitting, options.seed, without.held, with.held);
-  }
-  PairedErrors Compare(const Verdict& without, const Verdict& with) const {
-    return {without.track.held, with.track.held, Gain(without, with)};
   }
   // The threshold for the one that is chosen among so many refits.
   Threshold ThresholdFor(std::size_t tried) const {
@@ -49,23 +45,25 @@ struct Inquiry {
 
 // What is known before a round.
 struct Standing {
-  FittedBodies bodies;       // what effects are added to
-  Verdict common, accepted;  // without and with the springs' own parameters
-  // The verdict with another effect in the last round, if one was about as good as `common`. What
-  // is added next tells which is right.
+  FittedBodies bodies;  // what effects are added to
+  Verdict accepted;     // with the effects that were found
+  // The verdict with another effect in the last round, if one was about as good as the accepted
+  // one. What is added next tells which is right.
   std::optional<Verdict> rival;
 };
 
 // The search for one more effect.
 struct Attempt {
   Standing beside;  // what it is added to
-  EffectSearchResult search;
-  bool rival_won = false;     // `beside` is the rival of the last round
-  std::size_t best = 0;       // an index of search.verdicts
-  Verdict with_springs = {};  // the best one with its single springs fitted, where that was done
+  std::vector<EffectTrace> traces;
+  std::vector<Verdict> verdicts;  // the best few with smooth bodies, least held-out error first
+  std::vector<Verdict> others;    // those that were not refitted
+  bool rival_won = false;         // `beside` is the rival of the last round
+  std::size_t best = 0;           // an index of `verdicts`
 
-  bool found() const { return !search.verdicts.empty(); }
-  const Verdict& chosen() const { return search.verdicts[best]; }
+  bool found() const { return !verdicts.empty(); }
+  const Verdict& chosen() const { return verdicts[best]; }
+  std::size_t tried() const { return verdicts.size() + others.size(); }
 };
 
 // Whether frames to judge by lie between frames to fit.
@@ -113,86 +111,102 @@ std::size_t ChooseAmong(const Inquiry& inquiry, const std::vector<Verdict>& verd
   return ChooseSimplest(scored, BlockOf(inquiry.fitting), inquiry.options.seed);
 }
 
+// The verdicts with smooth bodies, least held-out error first; with bodies that hardly move, as they
+// are.
+std::vector<Verdict> Refine(const Inquiry& inquiry, const WorkShare& stage, const std::string& of,
+                            const std::vector<Verdict>& verdicts) {
+  std::vector<Verdict> refined =
+      inquiry.open() ? RefitSmoothly(inquiry.fitting, stage, of, verdicts) : verdicts;
+  std::stable_sort(refined.begin(), refined.end(),
+                   [](const Verdict& p, const Verdict& q) { return p.track.held < q.track.held; });
+  return refined;
+}
+
 // The model without a new effect, with those that are known; nothing if it diverges.
-std::optional<Standing> FitDeclared(const Fitting& fitting, const std::vector<EffectValues>& known,
+std::optional<Standing> FitDeclared(const Inquiry& inquiry, const std::vector<EffectValues>& known,
                                     const WorkShare& share) {
-  FittedBodies bodies = FitBodies(fitting, known, share.Part(0, 0.7));
-  const std::vector<Verdict> free = FitFreely(fitting, share.Part(0.7, 1), bodies.fitted);
+  FittedBodies bodies = FitBodies(inquiry.fitting, known, share.Part(0, 0.5));
+  const std::vector<Verdict> free =
+      FitFreely(inquiry.fitting, share.Part(0.5, 0.7), bodies.fitted);
   if (free.empty()) return {};
-  return Standing{std::move(bodies), free[0], free[0], {}};
+  const Verdict accepted =
+      Refine(inquiry, share.Part(0.7, 1), " without any new effect", {free[0]})[0];
+  return Standing{std::move(bodies), accepted, {}};
+}
+
+// One search beside what stands, and the best of what it found with smooth bodies.
+Attempt SearchBeside(const Inquiry& inquiry, const Standing& standing, const WorkShare& stage) {
+  Attempt attempt{standing, {}, {}, {}};
+  EffectSearchResult search = SearchEffects(inquiry.fitting, standing.bodies, inquiry.effects,
+                                            stage.Part(0, kSearchPart));
+  attempt.traces = std::move(search.traces);
+  attempt.others = std::move(search.verdicts);
+  const auto last = attempt.others.begin() +
+                    static_cast<std::ptrdiff_t>(std::min(kRefined, attempt.others.size()));
+  attempt.verdicts = Refine(inquiry, stage.Part(kSearchPart, 1), " with effects",
+                            {attempt.others.begin(), last});
+  attempt.others.erase(attempt.others.begin(), last);
+  if (attempt.found()) attempt.best = ChooseAmong(inquiry, attempt.verdicts);
+  return attempt;
 }
 
 // Searches for one more effect beside those that are accepted, or beside a rival's, which then
 // takes their place.
 Attempt Search(const Inquiry& inquiry, const Standing& standing, const WorkShare& stage) {
-  const auto search = [&](const FittedBodies& bodies, const WorkShare& part) {
-    return SearchEffects(inquiry.fitting, bodies, inquiry.effects, part);
-  };
-  if (!standing.rival) return {standing, search(standing.bodies, stage)};
-  Attempt first{standing, search(standing.bodies, stage.Part(0, 0.5))};
+  if (!standing.rival) return SearchBeside(inquiry, standing, stage);
+  Attempt first = SearchBeside(inquiry, standing, stage.Part(0, 0.5));
   const Verdict& rival = *standing.rival;
-  const FittedBodies bodies{{}, {rival.descent}};
-  Attempt other{{bodies, rival, rival, {}}, search(bodies, stage.Part(0.5, 1)), true};
+  Attempt other =
+      SearchBeside(inquiry, {{{}, {rival.descent}}, rival, {}}, stage.Part(0.5, 1));
+  other.rival_won = true;
   if (!other.found()) return first;
-  const std::vector<Verdict>& found = other.search.verdicts;
-  const Verdict& best = found[ChooseAmong(inquiry, found)];
+  const Verdict& best = other.chosen();
   const auto is_better_than = [&](const Verdict& verdict) {
     return IsSurelyBetter(inquiry.Gain(verdict, best));
   };
   const bool better = is_better_than(standing.accepted) &&
-                      (!first.found() || is_better_than(first.search.verdicts.front()));
-  const Threshold threshold = inquiry.ThresholdFor(found.size());
+                      (!first.found() || is_better_than(first.verdicts.front()));
+  const Threshold threshold = inquiry.ThresholdFor(other.tried());
   if (!better || !IsWorthIt(inquiry.Gain(rival, best), rival.track.held, threshold)) return first;
   return other;
 }
 
-// Traces all effects, refits the best few and chooses among them; none where nothing is left to
-// explain. What is chosen is fitted once more.
-Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int round,
-                       const WorkShare& stage) {
-  const bool done = NothingIsLeft(round, standing.common.track.held, standing.accepted.track.held,
-                                  inquiry.noise_floor);
-  Attempt attempt =
-      done ? Attempt{standing, {}} : Search(inquiry, standing, stage.Part(0, kFollowPart));
-  if (!attempt.found()) return attempt;
-  attempt.best = ChooseAmong(inquiry, attempt.search.verdicts);
-  Verdict& chosen = attempt.search.verdicts[attempt.best];
-  if (chosen.track.held > kExplained * inquiry.noise_floor) {
-    const WorkShare share = stage.Part(kFollowPart, kSearchPart);
-    // what it is compared with comes first: what that gains is no merit of the effect
-    Standing& beside = attempt.beside;
-    beside.common = FollowAgain(inquiry.fitting, share.Part(0, 0.5), beside.common);
-    if (round == 0) beside.accepted = Better(beside.accepted, beside.common);
-    chosen = FollowAgain(inquiry.fitting, share.Part(0.5, 1), chosen);
-  }
-  return attempt;
+// The body of what was chosen, without the effect: what another body gains is no merit of the
+// effect.
+void FitSameBody(const Inquiry& inquiry, const WorkShare& stage, Attempt* attempt) {
+  Standing& beside = attempt->beside;
+  const auto body_of = [](const Descent& descent) { return descent.hypothesis.body; };
+  const std::size_t body = body_of(attempt->chosen().descent);
+  if (body == body_of(beside.accepted.descent)) return;
+  const std::vector<Descent>& fitted = beside.bodies.fitted;
+  const auto same = std::find_if(fitted.begin(), fitted.end(),
+                                 [&](const Descent& fit) { return body_of(fit) == body; });
+  if (same == fitted.end()) return;
+  const std::vector<Verdict> free = FitFreely(inquiry.fitting, stage.Part(0, 0.5), {*same});
+  if (free.empty()) return;
+  beside.accepted = Better(
+      beside.accepted, Refine(inquiry, stage.Part(0.5, 1), " without any new effect", free)[0]);
 }
 
-// The attempt with single springs fitted: those of what was chosen and, in the first round, those
-// of the model without it, at the same time.
-Attempt FitSprings(const Inquiry& inquiry, Attempt attempt, int round, const WorkShare& stage) {
-  Standing& beside = attempt.beside;
-  if (attempt.found()) attempt.with_springs = attempt.chosen();
-  std::vector<Verdict*> refitted;
-  if (round == 0 && beside.accepted.provenance != Verdict::Provenance::kTraining) {
-    refitted.push_back(&beside.accepted);
+// Searches for one more effect, unless nothing is left to explain. What is chosen, and what it is
+// compared with, are fitted once more where bodies hardly move.
+Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int round,
+                       const WorkShare& stage) {
+  constexpr double kFound = 0.9;
+  if (NothingIsLeft(round, standing.accepted.track.held, inquiry.noise_floor)) {
+    return {standing, {}, {}, {}};
   }
-  // single springs that are not needed predict other motions worse
-  if (attempt.found() && !IsExplained(attempt.chosen().track.held, inquiry.noise_floor)) {
-    refitted.push_back(&attempt.with_springs);
-  }
-  if (inquiry.open()) {
-    const int count = static_cast<int>(refitted.size());
-    inquiry.fitting.journal().Stage(stage, count * kSpringSteps, "refitting single springs");
-    ParallelFor(count, inquiry.options.threads, [&](int i) {
-      Verdict& verdict = *refitted[static_cast<std::size_t>(i)];
-      verdict = inquiry.fitting.RefitSprings(kSpringSteps, verdict);
-    });
-  }
-  if (round == 0) beside.accepted = Better(beside.accepted, beside.common);
+  Attempt attempt = Search(inquiry, standing, stage.Part(0, kFound));
   if (!attempt.found()) return attempt;
-  if (!IsSurelyBetter(inquiry.Gain(attempt.chosen(), attempt.with_springs))) {
-    attempt.with_springs = attempt.chosen();
+  Verdict& chosen = attempt.verdicts[attempt.best];
+  const WorkShare share = stage.Part(kFound, 1);
+  if (inquiry.open()) {
+    FitSameBody(inquiry, share, &attempt);
+  } else if (!IsExplained(chosen.track.held, inquiry.noise_floor)) {
+    // what it is compared with comes first: what that gains is no merit of the effect
+    Verdict& accepted = attempt.beside.accepted;
+    accepted = Better(accepted, FollowAgain(inquiry.fitting, share.Part(0, 0.5), accepted));
+    chosen = FollowAgain(inquiry.fitting, share.Part(0.5, 1), chosen);
   }
   return attempt;
 }
@@ -214,59 +228,50 @@ std::string AtBounds(const EffectValues& effect) {
 
 // Why the effect that was found is not accepted, "NAME: ..."; empty if it is.
 std::string Refusal(const Inquiry& inquiry, const Attempt& attempt) {
-  const PairedErrors common = inquiry.Compare(attempt.beside.common, attempt.chosen());
-  const PairedErrors springs = inquiry.Compare(attempt.beside.accepted, attempt.with_springs);
-  const Threshold threshold = inquiry.ThresholdFor(attempt.search.verdicts.size());
-  const std::string name = NameOf(attempt.chosen());
-  if (!IsAccepted(common, springs, NewParametersOf(attempt.chosen()), threshold)) {
-    return name + ": " + WhyNotAccepted(common, springs, threshold);
+  const Verdict &without = attempt.beside.accepted, &with = attempt.chosen();
+  const std::string why =
+      WhyNotWorthIt(inquiry.Gain(without, with), without.track.held,
+                    inquiry.ThresholdFor(attempt.tried()));
+  if (!why.empty()) {
+    return fmt::format("{}: held out {:.2f} mm without it, {:.2f} mm with it: {}", NameOf(with),
+                       1e3 * without.track.held, 1e3 * with.track.held, why);
   }
-  const std::string bounds = AtBounds(attempt.chosen().system.effects.back());
+  const std::string bounds = AtBounds(with.system.effects.back());
   if (bounds.empty()) return "";
-  return fmt::format("{}: ends at the bound of {}, so it stands for something else", name, bounds);
+  return fmt::format("{}: ends at the bound of {}, so it stands for something else", NameOf(with),
+                     bounds);
 }
 
 // The best other effect of the search, if it is near the one that is accepted.
 std::optional<Verdict> RivalOf(const Inquiry& inquiry, const Attempt& attempt) {
-  const Verdict& common = attempt.beside.common;
-  const std::vector<Verdict>& verdicts = attempt.search.verdicts;  // best first
+  const Verdict& without = attempt.beside.accepted;
+  const std::vector<Verdict>& verdicts = attempt.verdicts;  // best first
   const auto rival = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& verdict) {
     return &verdict != &attempt.chosen() && !IsFreeForm(NewParametersOf(verdict)) &&
            AtBounds(verdict.system.effects.back()).empty() &&
            IsNear(verdict.track.held, attempt.chosen().track.held);
   });
   if (rival == verdicts.end()) return {};
-  const Threshold threshold = inquiry.ThresholdFor(verdicts.size());
-  if (!IsWorthIt(inquiry.Gain(common, *rival), common.track.held, threshold)) return {};
+  const Threshold threshold = inquiry.ThresholdFor(attempt.tried());
+  if (!IsWorthIt(inquiry.Gain(without, *rival), without.track.held, threshold)) return {};
   return *rival;
-}
-
-// The standing with the effect. Where that leaves something to explain, it is taken from a training
-// if that is better.
-Standing Accept(const Inquiry& inquiry, const Attempt& attempt, const WorkShare& stage) {
-  const Verdict& chosen = attempt.chosen();
-  Standing standing{
-      {{}, {chosen.descent}}, chosen, attempt.with_springs, RivalOf(inquiry, attempt)};
-  const bool explained = IsExplained(chosen.track.held, inquiry.noise_floor);
-  if (!inquiry.open() || !inquiry.options.train_anew || explained) return standing;
-  const auto anew = TrainAnew(inquiry.fitting, stage, standing.accepted.system.effects);
-  if (anew && IsSurelyBetter(inquiry.Gain(standing.accepted, *anew))) standing.accepted = *anew;
-  return standing;
 }
 
 EffectRanking Rank(const Inquiry& inquiry, const Attempt& attempt) {
   EffectRanking candidates;
-  for (const EffectTrace& trace : attempt.search.traces) {
+  for (const EffectTrace& trace : attempt.traces) {
     EffectCandidate candidate;
     candidate.name = trace.effect->name();
     candidate.score = trace.score;
-    for (const Verdict& verdict : attempt.search.verdicts) {
-      if (NameOf(verdict) != candidate.name) continue;
-      candidate.refit = verdict.track;
-      candidate.without = attempt.beside.common.track.held;
-      candidate.gain = inquiry.Gain(attempt.beside.common, verdict);
-      candidate.values = verdict.system.effects.back();
-      candidate.alike = IsAlike(inquiry.Gain(verdict, attempt.chosen()));
+    for (const std::vector<Verdict>& verdicts : {attempt.verdicts, attempt.others}) {
+      for (const Verdict& verdict : verdicts) {
+        if (NameOf(verdict) != candidate.name) continue;
+        candidate.refit = verdict.track;
+        candidate.without = attempt.beside.accepted.track.held;
+        candidate.gain = inquiry.Gain(attempt.beside.accepted, verdict);
+        candidate.values = verdict.system.effects.back();
+        candidate.alike = IsAlike(inquiry.Gain(verdict, attempt.chosen()));
+      }
     }
     candidates.push_back(std::move(candidate));
   }
@@ -302,26 +307,26 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
                                     const std::optional<Verdict>& trained) {
   const Inquiry inquiry{fitting, noise_floor, options,
                         EffectsFor(fitting.recordings(), fitting.bodies()[0].base)};
-  const auto declared = FitDeclared(fitting, known, share.Part(0, kCommonPart));
+  const auto declared = FitDeclared(inquiry, known, share.Part(0, kDeclaredPart));
   if (!declared) return {};
   Standing standing = *declared;
   if (trained) standing.accepted = Better(standing.accepted, *trained);
   Findings findings;
   for (int round = 0; round < options.most_effects; ++round) {
-    const WorkShare stage = ShareOf(share.Part(kCommonPart, 1), round, options.most_effects);
-    Attempt attempt = LookForOneMore(inquiry, standing, round, stage);
+    const WorkShare stage = ShareOf(share.Part(kDeclaredPart, 1), round, options.most_effects);
+    const Attempt attempt = LookForOneMore(inquiry, standing, round, stage);
     if (attempt.rival_won) {
-      findings.rankings.back() = WithoutAlike(findings.rankings.back(), NameOf(standing.common));
+      findings.rankings.back() =
+          WithoutAlike(findings.rankings.back(), NameOf(standing.accepted));
     }
     findings.rankings.push_back(Rank(inquiry, attempt));
-    attempt = FitSprings(inquiry, attempt, round, stage.Part(kSearchPart, kTrainingPart));
-    if (round == 0) findings.before = attempt.beside.accepted;
     standing = attempt.beside;
+    if (round == 0) findings.before = standing.accepted;
     if (attempt.found()) findings.refusal = Refusal(inquiry, attempt);
     if (!attempt.found() || !findings.refusal.empty()) break;
-    standing = Accept(inquiry, attempt, stage.Part(kTrainingPart, 1));
+    const Verdict& chosen = attempt.chosen();
+    standing = {{{}, {chosen.descent}}, chosen, RivalOf(inquiry, attempt)};
   }
-  findings.common = standing.common;
   findings.accepted = standing.accepted;
   return findings;
 }

@@ -15,7 +15,6 @@ namespace physpring {
 
 struct Findings {
   Verdict before, accepted;             // without any new effect, and with those that were accepted
-  Verdict common;                       // as `accepted`, without the springs' own parameters
   std::vector<EffectRanking> rankings;  // one for each round
   std::string refusal;  // why the best effect of the last round is not added; empty: there was none
 };

@@ -2,13 +2,11 @@
 #include "diagnosis/fitting.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "trainer/bodies/factors.h"
 #include "trainer/bodies/start_system.h"
 #include "trainer/motion/observer.h"
-#include "trainer/solvers/gauss_newton.h"
 #include "trainer/solvers/levenberg_marquardt.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/stability.h"
@@ -20,13 +18,6 @@ namespace {
 // recordings found may be wrong by a quarter, but an effect that does the opposite must not undo
 // it.
 constexpr EffectModel::OwnRange kTrusted{0.05, 0.25};
-constexpr int kSpringConjugateGradients = 20;
-constexpr double kEffectScale = 30;  // how strongly effects act beside the springs' own parts
-
-// Single springs are first fitted under an observer with this gain, for so many steps.
-constexpr double kFollowedGain = 0.05;
-constexpr int kFollowedSpringSteps = 3;
-
 // Sub-steps a second at most, as in training: common factors leave room for single springs.
 constexpr double kMostRate = 10000, kMostCommonRate = 5000;
 // A trusted body may take so many times the sub-steps a second that it came with.
@@ -47,20 +38,6 @@ void Unpack(const Eigen::VectorXd& packed, State* state) {
   state->damping = packed[size];
   state->mean_square = packed[size + 1];
   state->converged = packed[size + 2] != 0;
-}
-
-// The prior of the trainer and, for the effects, the one of Levenberg-Marquardt.
-GaussNewtonOptions Prior(const EffectModel& model) {
-  GaussNewtonOptions options = SpringPrior(model.own());
-  options.conjugate_gradient_steps = kSpringConjugateGradients;
-  const auto append = [&](double value, Eigen::VectorXd* values) {
-    const Eigen::Index own = values->size();
-    values->conservativeResize(model.size());
-    values->tail(model.size() - own).setConstant(value);
-  };
-  append(kDiagnosisPrecision, &options.precision);
-  append(kEffectScale, &options.scale);
-  return options;
 }
 
 }  // namespace
@@ -217,39 +194,12 @@ std::vector<Verdict> Fitting::JudgeAll(const std::vector<Descent>& descents) con
   return verdicts;
 }
 
-Verdict Fitting::RefitSprings(int steps, const Verdict& verdict) const {
-  assert(verdict.provenance == Verdict::Provenance::kCommonFactors);
-  const Hypothesis& hypothesis = verdict.descent.hypothesis;
-  const DiagnosisBody& body = bodies_[hypothesis.body];
-  SpringMassSystem base = verdict.system;
-  base.effects.clear();
-  const EffectModel model(SpringFactors(base, *recordings_[0].recording), {},
-                          verdict.system.effects);
-  const GaussNewtonOptions prior = Prior(model);
-  GaussNewtonState state;
-  state.x = Eigen::VectorXd::Zero(model.size());
-  for (const bool followed : {true, false}) {
-    const double gain = followed ? kFollowedGain : 0;
-    EffectProblem problem = MakeProblem(model, body, gain, threads_);
-    state.damping = 1e-3;
-    state.converged = false;
-    int slow = 0;
-    for (int step = 0; step < (followed ? kFollowedSpringSteps : steps); ++step) {
-      const GaussNewtonState before = state;
-      PieceKey key = KeyOf("Gauss-Newton", hypothesis);
-      const Eigen::VectorXd after =
-          journal().Get(key.Add(verdict.descent.x).Add(gain).Add(state.x).Add(state.damping),
-                        [&] { return Pack(GaussNewtonStep(&problem, state, prior)); });
-      Unpack(after, &state);
-      slow = step > 0 && state.mean_square > kSlowStep * before.mean_square ? slow + 1 : 0;
-      if (slow == kMostSlowSteps || IsStuck(before, state, step == 0)) break;
-    }
-  }
-  EffectProblem problem = MakeProblem(model, body, 0, threads_);
-  std::optional<Verdict> refitted = JudgeAt(&problem, state.x, verdict.descent);
-  if (!refitted) return verdict;
-  refitted->provenance = Verdict::Provenance::kSprings;
-  return *refitted;
+std::optional<Verdict> Fitting::JudgeSystem(const SpringMassSystem& system,
+                                            const Verdict& verdict) const {
+  const EffectModel as_it_is(CommonFactors(system, *recordings_[0].recording), {}, {});
+  const Descent& descent = verdict.descent;
+  EffectProblem problem = MakeProblem(as_it_is, bodies_[descent.hypothesis.body], 0, 1);
+  return JudgeAt(&problem, Eigen::VectorXd::Zero(as_it_is.size()), descent);
 }
 
 }  // namespace physpring

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits of hypotheses (hypothesis.h): the body's common factors and the effects' parameters
-// together, by Levenberg-Marquardt, and single springs besides, by Gauss-Newton.
+// together, by Levenberg-Marquardt.
 #ifndef PHYSPRING_DIAGNOSIS_FITTING_H_
 #define PHYSPRING_DIAGNOSIS_FITTING_H_
 
@@ -54,9 +54,8 @@ class Fitting {
   // The verdicts on the descents, in their order. Those that diverge are left out.
   std::vector<Verdict> JudgeAll(const std::vector<Descent>& descents) const;
 
-  // Fits single springs, too, for a verdict from common factors: under an observer, and then for at
-  // most `steps` steps without one. Returns the same verdict if that diverges.
-  Verdict RefitSprings(int steps, const Verdict& verdict) const;
+  // The verdict on another system that comes from the same descent; nothing if its motion diverges.
+  std::optional<Verdict> JudgeSystem(const SpringMassSystem& system, const Verdict& verdict) const;
 
  private:
   SpringMassSystem Base(std::size_t body, double start_substeps) const;

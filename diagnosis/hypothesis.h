@@ -45,7 +45,7 @@ struct TrackPair {
 };
 
 struct Verdict {
-  enum class Provenance { kCommonFactors, kSprings, kTraining };
+  enum class Provenance { kCommonFactors, kSmooth, kTraining };
   Provenance provenance = Provenance::kCommonFactors;
   Descent descent;  // what it comes from; a training has none
   SpringMassSystem system;

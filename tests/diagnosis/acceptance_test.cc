@@ -26,10 +26,10 @@ BootstrapResult Gain(double mean, double p = 0.0005, double error = 0.01) {
 PairedErrors Compare(double without, double with) { return {without, with, Gain(without - with)}; }
 
 TEST(NothingIsLeft, WithinAQuarterOfTheNoiseOrTwiceItOnceAnEffectWasFound) {
-  EXPECT_TRUE(NothingIsLeft(0, 1.2, 9, 1));
-  EXPECT_FALSE(NothingIsLeft(0, 1.3, 0.5, 1));
-  EXPECT_TRUE(NothingIsLeft(1, 9, 1.9, 1));
-  EXPECT_FALSE(NothingIsLeft(1, 0.5, 2.1, 1));
+  EXPECT_TRUE(NothingIsLeft(0, 1.2, 1));
+  EXPECT_FALSE(NothingIsLeft(0, 1.3, 1));
+  EXPECT_TRUE(NothingIsLeft(1, 1.9, 1));
+  EXPECT_FALSE(NothingIsLeft(1, 2.1, 1));
 }
 
 TEST(IsFreeForm, OfMoreThanTwentyParameters) {
@@ -110,28 +110,6 @@ TEST(WhyNotWorthIt, NamesTheConditionThatFailsWithItsNumbers) {
             "its gain may be chance: p is 0.03, below 0.01 is asked");
   EXPECT_EQ(WhyNotWorthIt(Gain(0.19), 0.9, kThreshold),
             "it gains 190 mm, more than 200 mm, a part of the noise, are asked");
-}
-
-TEST(WhyNotAccepted, TellsTheErrorsThatWereCompared) {
-  EXPECT_EQ(WhyNotAccepted(Compare(5, 5), Compare(5, 1), kThreshold),
-            "it predicts held-out frames no better than common factors without it");
-  EXPECT_EQ(WhyNotAccepted(Compare(5, 4), Compare(5, 3.8), kThreshold),
-            "held out 5000.00 mm without it, 3800.00 mm with it: it takes 30 % of the error above "
-            "the noise, more than 40 % are asked");
-}
-
-TEST(IsAccepted, PredictsBetterWithCommonFactorsAlone) {
-  EXPECT_FALSE(IsAccepted(Compare(5, 5), Compare(5, 1), 2, kThreshold));
-  EXPECT_TRUE(IsAccepted(Compare(5, 4.9), Compare(5, 1), 2, kThreshold));
-}
-
-TEST(IsAccepted, BesideSingleSpringsThatDoAsWellWithoutItIfItExplainsNearlyAll) {
-  const PairedErrors springs = Compare(1.3, 1.3);
-  EXPECT_TRUE(IsAccepted(Compare(5, 1.7), springs, 2, kThreshold));    // 3.3 of 4
-  EXPECT_FALSE(IsAccepted(Compare(5, 1.9), springs, 2, kThreshold));   // 3.1 of 4
-  EXPECT_FALSE(IsAccepted(Compare(5, 1.7), springs, 37, kThreshold));  // a free form
-  // single springs without it are better by a fifth of the noise
-  EXPECT_FALSE(IsAccepted(Compare(5, 1.7), Compare(1.3, 1.6), 2, kThreshold));
 }
 
 // A fit whose held-out errors are `mean` in the mean, each up to 1 off.

@@ -24,6 +24,7 @@ ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& r
                                const BodyKind& kind, const SmoothBody::Options& body) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
+  options.free_effects = body.free_effects;
   options.class_dashpots = false;
   options.classes = {kClassJump, kEqualClasses, body.hands_apart, body.directions};
   options.modes = SpringModes(start, kModes);

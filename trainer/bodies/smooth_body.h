@@ -21,6 +21,7 @@ class SmoothBody {
     double most_rate;          // the most sub-steps a second; whole ones a frame, at least one
     bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
     bool directions = false;   // so are springs of other directions
+    int free_effects = 0;      // so many of the system's effects move, too, the last ones
   };
 
   // `start`: the system at x = 0, whose springs have one loss time.
