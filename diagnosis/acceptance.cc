@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace physpring {
 namespace {
@@ -46,21 +47,25 @@ bool IsWorthIt(const BootstrapResult& gain, double without, const Threshold& thr
 }
 
 std::string WhyNotWorthIt(const BootstrapResult& gain, double without, const Threshold& threshold) {
-  const double excess = std::max(0.0, without - threshold.noise_floor);
+  const double with = std::max(0.0, without - gain.mean), floor = threshold.noise_floor;
+  const double excess = std::max(0.0, without * without - floor * floor);
+  const double taken = without * without - with * with;
   const double asked_p = threshold.false_alarm / threshold.tried;
-  const double asked_noise = threshold.least_noise * threshold.noise_floor;
   if (!(gain.p < asked_p)) {
     return fmt::format("its gain may be chance: p is {:.2g}, below {:.2g} is asked", gain.p,
                        asked_p);
   }
-  if (!(gain.mean > threshold.least_gain * excess)) {
+  if (!(taken > threshold.least_gain * excess)) {
     return fmt::format(
-        "it takes {:.0f} % of the error above the noise, more than {:.0f} % are asked",
-        100 * gain.mean / excess, 100 * threshold.least_gain);
+        "it takes {:.0f} % of the squared error above the noise, more than {:.0f} % "
+        "are asked",
+        100 * taken / excess, 100 * threshold.least_gain);
   }
-  if (!(gain.mean > asked_noise)) {
-    return fmt::format("it gains {:.3g} mm, more than {:.3g} mm, a part of the noise, are asked",
-                       1e3 * gain.mean, 1e3 * asked_noise);
+  if (!(std::sqrt(taken) > threshold.least_noise * floor)) {
+    return fmt::format(
+        "it takes {:.3g} mm off the error, in squares, more than {:.3g} mm, a part "
+        "of the noise, are asked",
+        1e3 * std::sqrt(taken), 1e3 * threshold.least_noise * floor);
   }
   return "";
 }

@@ -14,11 +14,10 @@
 
 namespace physpring {
 
-// Errors below this, times the noise floor, say that nothing is missing.
-inline constexpr double kExplained = 1.25;
+// Errors below this, times the noise floor, are no more than noise: nothing is missing. A body that
+// lacks little comes near to that, too.
+inline constexpr double kExplained = 1.05;
 
-// Whether the error is no more than noise. Where it is more, single springs do not bend to the
-// noise.
 bool IsExplained(double error, double noise_floor);
 
 // Whether there is nothing to look for, by the error with those effects that were accepted.
@@ -45,12 +44,12 @@ bool IsHopeless(double misfit, double least_misfit);
 // Whether a trace's score is worth a refit, beside the best one.
 bool IsWorthRefit(double score, double best_score);
 
-// What an effect must explain.
+// What an effect must explain, by squares of errors: those of noise and of what is missing add up.
 struct Threshold {
   double noise_floor;  // m
   double false_alarm;  // rate at which a model that lacks nothing gets an effect
-  double least_gain;   // what it must gain, as a part of the error above the noise floor
-  double least_noise;  // what it must gain, as a part of the noise floor
+  double least_gain;   // of the square above that of the noise floor, the part that it must take
+  double least_noise;  // the root of the square that it takes, as a part of the noise floor
   int tried;           // how many refits it was chosen among
 };
 

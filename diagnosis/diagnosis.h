@@ -2,19 +2,19 @@
 // The closed loop: what does a twin get wrong on recordings of its object, and which effect that
 // its model lacks is the cause?
 //   1  noise    from the measurements alone (noise_floor.h)
-//   2  refit    of the model without any new effect, on the fit frames
+//   2  refit    of the model without any new effect, on the fit frames: the best of the bodies that
+//               come into question (diagnosis_body.h), as a smooth one
 //   3  trace    of every effect: how much a linearised fit with its parameters added would lower
 //               the misfit, from each of its starts (effect_trace.h)
-//   4  search   of the best effects, each on each body that comes into question
-//               (diagnosis_body.h), by refits under an observer that lets go (effect_search.h)
-//   5  choose   the one that is best on frames not fitted, or a simpler one that is as good; with
-//               its single springs fitted, too, it is accepted if it beats the refit without it
-//               by more than chance (paired block bootstrap) and by more than a small part
-//   6  train    a twin that was trained on these recordings anew, with the effect
-//   7  repeat from 3, until nothing is accepted; where another effect was about as good,
+//   4  search   of the best effects by refits of body and effect together, under an observer that
+//               lets go (effect_search.h)
+//   5  choose   the one that is best on frames not fitted, or a simpler one that is as good; it is
+//               accepted if it beats the refit without it by more than chance (paired block
+//               bootstrap) and by more than a small part
+//   6  repeat from 3, until nothing is accepted; where another effect was about as good,
 //               beside that, too: what is added next tells which of them it is
-//   8  tell    the forces that are still missing, before and after (residual_force.h)
-//   9  end     where frames were held out, and no recordings: what was found is fitted to these
+//   7  tell    the forces that are still missing, before and after (residual_force.h)
+//   8  end     where frames were held out, and no recordings: what was found is fitted to these
 //               frames, too (last_fit.h)
 #ifndef PHYSPRING_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_DIAGNOSIS_DIAGNOSIS_H_
@@ -42,9 +42,8 @@ struct DiagnosisOptions {
   std::uint64_t seed = 0;
   int most_effects = 3;       // so many are accepted at most; at least 1
   double false_alarm = 0.05;  // rate at which a model that lacks nothing gets an effect
-  // What an effect must explain at least: a part of the error above the noise floor, and a part of
-  // the noise floor.
-  double least_gain = 0.4, least_noise = 0.2;
+  // What an effect must explain at least (acceptance.h).
+  double least_gain = 0.6, least_noise = 0.3;
   // Holds what is worked out already, and keeps more of it. Its `progress` is called in between.
   Journal* journal = nullptr;
 };

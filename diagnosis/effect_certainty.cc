@@ -38,26 +38,24 @@ Eigen::MatrixXd GradientScatter(const Eigen::MatrixXd& jacobian, const Eigen::Ve
 }  // namespace
 
 std::vector<ValueCertainty> CertaintyFrom(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& r,
-                                          int first) {
+                                          const Eigen::MatrixXd& precision, int first) {
   const Eigen::Index size = jacobian.cols();
   const double variance = std::max(1e-300, r.squaredNorm() / static_cast<double>(r.size()));
-  Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance;
-  normal.diagonal().array() += kDiagnosisPrecision;
+  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian / variance + precision;
   const Eigen::MatrixXd covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-  Eigen::MatrixXd scatter = GradientScatter(jacobian, r) / (variance * variance);
-  scatter.diagonal().array() += kDiagnosisPrecision;
+  const Eigen::MatrixXd scatter = GradientScatter(jacobian, r) / (variance * variance) + precision;
   const Eigen::MatrixXd robust = covariance * scatter * covariance;
   std::vector<ValueCertainty> certainty;
   for (Eigen::Index i = first; i < size; ++i) {
     certainty.push_back({std::sqrt(std::max({0.0, covariance(i, i), robust(i, i)})),
                          std::clamp(1 - 1 / (normal(i, i) * covariance(i, i)), 0.0, 1.0),
-                         std::clamp(kDiagnosisPrecision * covariance(i, i), 0.0, 1.0)});
+                         std::clamp(precision(i, i) * covariance(i, i), 0.0, 1.0)});
   }
   return certainty;
 }
 
 std::vector<ValueCertainty> CertaintyOf(const Fitting& fitting, const Descent& fit) {
-  EffectProblem problem = fitting.Problem(fit.hypothesis, 0);
+  EffectProblem problem = fitting.Problem(fit.hypothesis, 0, Fitting::Care::kExact);
   if (!problem.FixSubsteps(fit.x)) return {};
   const auto r = problem.Residuals(fit.x);
   if (!r || r->size() == 0) return {};
@@ -66,7 +64,8 @@ std::vector<ValueCertainty> CertaintyOf(const Fitting& fitting, const Descent& f
       ResidualsOf(problem), fit.x, *r, {0, size, fitting.difference(), fitting.threads()});
   const int count = problem.model().effect_size(), own = size - count;
   const Eigen::VectorXd values = LastValuesOf(problem.model().Apply(fit.x), count);
-  std::vector<ValueCertainty> certainty = CertaintyFrom(jacobian, *r, own);
+  std::vector<ValueCertainty> certainty =
+      CertaintyFrom(jacobian, *r, problem.model().Precision(fit.x), own);
   for (int i = 0; i < count; ++i) {
     // how far the value moves with its entry of x
     Eigen::VectorXd moved = fit.x;

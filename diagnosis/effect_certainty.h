@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well recordings determine an effect's parameters, from the curvature of the misfit: with
-// J = d r / d x of the body's common factors and all effects' parameters together,
+// J = d r / d x of the body's numbers and all effects' parameters together,
 //   N = J^T J / variance + prior,   C = N^-1.
 // The variance is that of the residuals left, so that what the model still gets wrong widens the
 // intervals. Neighbouring residuals are alike, so C alone is too narrow: the gradients g of the
@@ -30,10 +30,11 @@ struct ValueCertainty {
   bool IsUntold() const { return unknown > 0.5; }       // by the recordings
 };
 
-// The certainty of the entries of x from `first` on, in the entries' units, from the Jacobian and
-// the residuals left.
+// The certainty of the entries of x from `first` on, in the entries' units, from the Jacobian, the
+// residuals left, and the prior's precision.
 std::vector<ValueCertainty> CertaintyFrom(const Eigen::MatrixXd& jacobian,
-                                          const Eigen::VectorXd& residuals, int first);
+                                          const Eigen::VectorXd& residuals,
+                                          const Eigen::MatrixXd& precision, int first);
 
 // The certainty of the effects' values, one effect after the other, where a descent is; empty if
 // that cannot be evaluated.

@@ -12,22 +12,6 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-// The model with dashpots that are stable at this sub-step.
-struct LimitedModel {
-  EffectModel model;
-  double timestep;
-
-  SpringMassSystem Apply(const Eigen::VectorXd& x) const {
-    SpringMassSystem system = model.Apply(x);
-    LimitDashpots(timestep, &system);
-    return system;
-  }
-  Eigen::VectorXd Adjoint(const Eigen::VectorXd& x, const SpringMassSystem& /*limited*/,
-                          const SystemGradient& gradient) const {
-    return model.Adjoint(x, model.Apply(x), gradient);
-  }
-};
-
 // The shortest sub-step, s, of which a frame of each recording takes a whole number.
 double ShortestStep(const std::vector<SplitRecording>& recordings, double most_rate) {
   double step = 1 / most_rate;
@@ -40,8 +24,12 @@ double ShortestStep(const std::vector<SplitRecording>& recordings, double most_r
 
 SystemMap MapOf(const EffectModel& model, const std::vector<SplitRecording>& recordings,
                 const EffectProblem::Options& options) {
-  if (!options.limit_dashpots) return model;
-  return LimitedModel{model, ShortestStep(recordings, options.most_rate) / options.safety};
+  const double timestep = ShortestStep(recordings, options.most_rate) / options.safety;
+  return SystemMap::OfResiduals([model, timestep](const Eigen::VectorXd& x) {
+    SpringMassSystem system = model.Apply(x);
+    LimitDashpots(timestep, &system);
+    return system;
+  });
 }
 
 // Episodes up to the last frame to fit or, without `fit_only`, up to the last one in use.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fitting a model with effects to recordings as a least-squares problem (motion_problem.h), and
-// judging it on frames that are not fitted.
+// judging it on frames that are not fitted. Dashpots that would need more sub-steps than there may
+// be are lowered, all by one factor. There are residuals alone, no adjoint.
 #ifndef PHYSPRING_DIAGNOSIS_EFFECT_PROBLEM_H_
 #define PHYSPRING_DIAGNOSIS_EFFECT_PROBLEM_H_
 
@@ -26,9 +27,6 @@ class EffectProblem : public MotionProblem {
  public:
   struct Options : MotionProblem::Options {
     Options();
-    // Dashpots that would need a higher rate are lowered, all by one factor. There is no adjoint of
-    // that.
-    bool limit_dashpots = false;
   };
 
   EffectProblem(const EffectModel& model, const std::vector<SplitRecording>& recordings,

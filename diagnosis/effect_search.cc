@@ -14,33 +14,27 @@ namespace physpring {
 namespace {
 
 constexpr std::size_t kTracedEffects = 6;  // no more than these are tried on fitted bodies
-// Effects are tried on no more than these bodies from the start on.
-constexpr std::size_t kEarlyBodies = 2;
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-// Parts of a search's work that are done after effects are tried from the start on, and after they
-// are traced.
-constexpr double kEarlyShare = 0.4, kTraceShare = 0.5;
-constexpr std::size_t kMostStrong = 4;
-constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
+constexpr char kWithoutEffect[] = " without any new effect";
 
 // How many steps all fits make, and how many fits go on after that: in all, and with one effect.
 struct Cut {
   double gain;
   int steps;
   std::size_t kept, of_an_effect;
+  Fitting::Care care = Fitting::Care::kRough;
 };
-// In this order: bodies without effects under the highest gain, down to the one of the trace, and
-// down to none; laws on the best body, strong ones on all; all effects before the trace, and after
-// it; one fit once more.
-constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 4, 4}}};
-constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 5, 3, 3}, {0.1, 10, 2, 2}}};
-constexpr std::array<Cut, 2> kFreeCuts = {{{0.05, 4, 2, 2}, {0, 8, 2, 2}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
-constexpr std::array<Cut, 2> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 6, 4, 3}}};
-constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
-constexpr std::array<Cut, 3> kCuts = {{{0.1, 2, 10, 2}, {0.05, 3, 6, 2}, {0, 12, 6, 2}}};
-constexpr std::array<Cut, 4> kAgainCuts = {
-    {{0.2, 4, 1, 1}, {0.1, 4, 1, 1}, {0.05, 4, 1, 1}, {0, 12, 1, 1}}};
+// In this order: bodies of common factors under the highest gain, and the best ones as smooth
+// bodies; those down to the gain of the trace, and down to none; laws with common factors; all
+// effects; one fit once more.
+constexpr std::array<Cut, 1> kCommonBodyCuts = {{{0.5, 5, 2, 2}}};
+constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 4, 1, 1}}};
+constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
+constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 4, 1}}};
+constexpr std::array<Cut, 3> kCuts = {{{0.2, 2, 8, 2}, {0.1, 3, 5, 1}, {0, 15, 5, 1}}};
+constexpr std::array<Cut, 3> kAgainCuts = {
+    {{0.2, 3, 1, 1}, {0.1, 3, 1, 1}, {0, 15, 1, 1, Fitting::Care::kExact}}};
 
 bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
 
@@ -80,7 +74,7 @@ void Halve(const Fitting& fitting, std::span<const Cut> cuts, const WorkShare& s
       fit.damping = 1e-2;
       fit.converged = false;
     }
-    fitting.Descend(cut.gain, cut.steps, fits);
+    fitting.Descend(cut.gain, cut.care, cut.steps, fits);
     Keep(cut.kept, cut.of_an_effect, fits);
   }
 }
@@ -92,6 +86,15 @@ std::vector<Verdict> JudgeAndSort(const Fitting& fitting, const std::vector<Desc
   return verdicts;
 }
 
+// The fits with smooth bodies; those of bodies that hardly move as they are.
+std::vector<Descent> SmoothAll(const Fitting& fitting, std::vector<Descent> fits,
+                               SmoothBody::Numbers numbers = SmoothBody::Numbers::kFew) {
+  for (Descent& fit : fits) {
+    if (!fitting.bodies()[fit.hypothesis.body].trusted) fit = fitting.Smooth(fit, numbers);
+  }
+  return fits;
+}
+
 // The fit with one more effect, from where the fit is.
 Descent With(const Descent& fit, const EffectTrace& trace) {
   Descent with = fit;
@@ -100,60 +103,23 @@ Descent With(const Descent& fit, const EffectTrace& trace) {
   return with;
 }
 
-// Laws of the springs change bodies so much that these begin anew; so does the body alone that
-// they are compared with, whose steps the journal has already.
-std::vector<Descent> FitLaws(const Fitting& fitting, const std::vector<Descent>& bodies,
+// The laws that fit best. They change bodies so much that common factors begin anew.
+std::vector<Descent> FitLaws(const Fitting& fitting, const Descent& body,
                              const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<Descent> fits;
-  const Descent& first = bodies.front();
-  const auto add = [&](std::size_t body, const EffectValues& law) {
-    std::vector<EffectValues> values = first.hypothesis.effects;
-    values.push_back(law);
-    Descent fit = fitting.Begin(body, values);
-    if (fit.x.size() > 0) fits.push_back(std::move(fit));
-  };
-  std::vector<Descent> alone = {fitting.Begin(first.hypothesis.body, first.hypothesis.effects)};
-  Halve(fitting, kLawCuts, stage.Part(0, 0.03), kWithoutEffect, &alone);
+  const Hypothesis& hypothesis = body.hypothesis;
+  const SpringMassSystem system = fitting.Model(hypothesis).Apply(body.x);
   for (const Effect* effect : effects) {
-    for (const Eigen::VectorXd& start :
-         effect->Starts(fitting.Model(first.hypothesis).Apply(first.x))) {
-      if (effect->MakeTension(start)) add(first.hypothesis.body, {effect->name(), start});
+    for (const Eigen::VectorXd& start : effect->Starts(system)) {
+      if (!effect->MakeTension(start)) continue;
+      std::vector<EffectValues> values = hypothesis.effects;
+      values.push_back({effect->name(), start});
+      Descent fit = fitting.Begin(hypothesis.body, values);
+      if (fit.x.size() > 0) fits.push_back(std::move(fit));
     }
   }
-  Halve(fitting, kLawCuts, stage.Part(0.03, 0.5), kWithLaw, &fits);
-  std::vector<EffectValues> strong;
-  for (const Descent& fit : fits) {
-    if (IsStrongLaw(fit.misfit, alone.front().misfit))
-      strong.push_back(fit.hypothesis.effects.back());
-  }
-  if (strong.empty()) {
-    Keep(fits.size(), 1, &fits);
-    return fits;
-  }
-  strong.resize(std::min(strong.size(), kMostStrong));
-  fits.clear();
-  for (const EffectValues& law : strong) {
-    for (std::size_t body = 0; body < fitting.bodies().size(); ++body) add(body, law);
-  }
-  Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
-  return fits;
-}
-
-// Fits with effects on bodies that were fitted under the highest gain only.
-std::vector<Descent> FitFromStart(const Fitting& fitting, const std::vector<Descent>& bodies,
-                                  const std::vector<const Effect*>& effects,
-                                  const WorkShare& stage) {
-  if (bodies.empty()) return {};
-  std::vector<Descent> fits = FitLaws(fitting, bodies, effects, stage.Part(0, 0.3));
-  for (const EffectTrace& trace :
-       TraceEffects(fitting, bodies.front(), effects, kEarlyTraceGain, stage.Part(0.3, 0.5))) {
-    if (trace.start.size() == 0) continue;
-    for (std::size_t i = 0; i < std::min(bodies.size(), kEarlyBodies); ++i) {
-      fits.push_back(With(bodies[i], trace));
-    }
-  }
-  Halve(fitting, kEarlyCuts, stage.Part(0.5, 1), " from the start on", &fits);
-  return fits;
+  Halve(fitting, kLawCuts, stage, " with another law", &fits);
+  return SmoothAll(fitting, fits);
 }
 
 // The traces with the best scores, as far as they are worth a refit.
@@ -167,6 +133,12 @@ std::vector<EffectTrace> BestTraces(std::vector<EffectTrace> traces) {
   return traces;
 }
 
+// The fit with each of the best effects of a trace.
+void AddTraced(const Descent& fit, const std::vector<EffectTrace>& traces,
+               std::vector<Descent>* fits) {
+  for (const EffectTrace& trace : BestTraces(traces)) fits->push_back(With(fit, trace));
+}
+
 }  // namespace
 
 FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
@@ -177,9 +149,11 @@ FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& 
     Descent fit = fitting.Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
-  Halve(fitting, kEarlyBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
+  Halve(fitting, kCommonBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
+  fits = SmoothAll(fitting, fits);
+  Halve(fitting, kEarlyBodyCuts, stage.Part(0.3, 0.6), kWithoutEffect, &fits);
   bodies.early = fits;
-  Halve(fitting, kBodyCuts, stage.Part(0.3, 1), kWithoutEffect, &fits);
+  Halve(fitting, kBodyCuts, stage.Part(0.6, 1), kWithoutEffect, &fits);
   return bodies;
 }
 
@@ -193,14 +167,17 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
                                  const std::vector<const Effect*>& effects,
                                  const WorkShare& stage) {
   EffectSearchResult result;
-  std::vector<Descent> fits =
-      FitFromStart(fitting, bodies.early, effects, stage.Part(0, kEarlyShare));
-  result.traces = TraceEffects(fitting, bodies.fitted.front(), effects, kTraceGain,
-                               stage.Part(kEarlyShare, kTraceShare));
-  for (const EffectTrace& trace : BestTraces(result.traces)) {
-    for (const Descent& body : bodies.fitted) fits.push_back(With(body, trace));
+  std::vector<Descent> fits;
+  if (!bodies.early.empty()) {
+    const Descent& early = bodies.early.front();
+    fits = FitLaws(fitting, early, effects, stage.Part(0, 0.1));
+    AddTraced(early, TraceEffects(fitting, early, effects, kEarlyTraceGain, stage.Part(0.1, 0.2)),
+              &fits);
   }
-  Halve(fitting, kCuts, stage.Part(kTraceShare, 1), "", &fits);
+  const Descent& fitted = bodies.fitted.front();
+  result.traces = TraceEffects(fitting, fitted, effects, kTraceGain, stage.Part(0.2, 0.3));
+  AddTraced(fitted, result.traces, &fits);
+  Halve(fitting, kCuts, stage.Part(0.3, 1), "", &fits);
   result.verdicts = JudgeAndSort(fitting, fits);
   // keeps the body that predicts best for each effect
   std::map<std::string, int> seen;
@@ -210,8 +187,8 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
   return result;
 }
 
-Verdict FollowAgain(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict) {
-  std::vector<Descent> again = {verdict.descent};
+Verdict Refine(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict) {
+  std::vector<Descent> again = SmoothAll(fitting, {verdict.descent}, SmoothBody::Numbers::kAll);
   Halve(fitting, kAgainCuts, stage, " once more", &again);
   if (again.empty() || again[0].misfit >= verdict.descent.misfit) return verdict;
   const std::optional<Verdict> better = fitting.Judge(again[0]);

@@ -3,12 +3,14 @@
 // observer whose gain falls (observer.h): with a high gain the misfit is the body's, since what is
 // missing has no time to add up; with a low one it is the effect's. So bodies are chosen first.
 //
+// Bodies are smooth ones (trainer/bodies/smooth_body.h). Common factors cannot make a body the true
+// one, and an effect then stands for what they lack; single springs bend to what an effect does.
+//
 // A body that is fitted further without what it lacks bends to make up for it. A block whose
 // springs yield becomes one of high damping, and no step with the effect leads back from there. So
-// effects are tried twice. First they are tried from the start on, on bodies fitted under the
-// highest gain only, from where a trace says. (One linear step says little of laws of the springs,
-// so these are also tried by two steps from each of their starts.) Then those that a trace ranks
-// first are tried on the bodies fitted further. From the gain of that trace on, all go down
+// effects that a trace ranks first are tried on the body fitted under the highest gain only, and on
+// the body fitted further. One linear step says little of laws of the springs, so these are also
+// tried by two steps of common factors from each of their starts. From there on all go down
 // together, the better part at a time (successive halving).
 #ifndef PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
@@ -21,8 +23,8 @@ namespace physpring {
 
 // `stage`, here and below: the share of the work, for the journal.
 
-// The bodies that fit best with the effects that are known, the best first. Those that diverge are
-// left out.
+// The bodies that fit best with the effects that are known, the best first; smooth ones, but for
+// bodies that hardly move. Those that diverge are left out.
 struct FittedBodies {
   std::vector<Descent> early;  // fitted under the highest gain only; none after an effect was found
   std::vector<Descent> fitted;  // fitted down to the gain of the trace
@@ -43,9 +45,10 @@ struct EffectSearchResult {
 EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
-// The verdict, fitted once more from where it is, under an observer and then without one. What is
-// far from its least may come nearer to it in this way. The same verdict where that fits worse.
-Verdict FollowAgain(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict);
+// The verdict, fitted once more from where it is, under an observer and then without one: a smooth
+// body with all its numbers. A body that hardly moves may come nearer to its least in this way. The
+// same verdict where that fits worse.
+Verdict Refine(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict);
 
 }  // namespace physpring
 

@@ -31,7 +31,7 @@ class Tracer {
 
   // Sets the point to trace from; false if it cannot be evaluated.
   bool Prepare() {
-    EffectProblem own = fitting_.Problem(fit_.hypothesis, gain_);
+    EffectProblem own = fitting_.Problem(fit_.hypothesis, gain_, Fitting::Care::kRough);
     if (!own.FixSubsteps(fit_.x)) return false;
     const auto r = own.Residuals(fit_.x);
     if (!r || r->size() == 0) return false;
@@ -77,7 +77,7 @@ class Tracer {
   EffectProblem Add(const Effect& effect, const Eigen::VectorXd& start) const {
     Hypothesis with = fit_.hypothesis;
     with.effects.push_back({effect.name(), start});
-    return fitting_.Problem(with, gain_);
+    return fitting_.Problem(with, gain_, Fitting::Care::kRough);
   }
   Eigen::VectorXd Extend(const Eigen::VectorXd& start) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(fit_.x.size() + start.size());
@@ -89,9 +89,9 @@ class Tracer {
   double BestStep(EffectProblem* problem, const Eigen::VectorXd& x, const Eigen::VectorXd& at,
                   const Eigen::MatrixXd& j) const {
     const double variance = r_.squaredNorm() / static_cast<double>(r_.size());
-    Eigen::MatrixXd normal = j.transpose() * j / variance;
-    normal.diagonal().array() += kDiagnosisPrecision;
-    const Eigen::VectorXd gradient = j.transpose() * at / variance + kDiagnosisPrecision * x;
+    const Eigen::MatrixXd precision = problem->model().Precision(x);
+    const Eigen::MatrixXd normal = j.transpose() * j / variance + precision;
+    const Eigen::VectorXd gradient = j.transpose() * at / variance + precision * x;
     std::vector<Eigen::VectorXd> tried;
     for (double damping : {1e-3, 3e-2, 1.0, 30.0}) {
       Eigen::MatrixXd damped = normal;

@@ -9,20 +9,17 @@
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/effect_search.h"
-#include "diagnosis/smooth_refit.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {
 namespace {
 
-constexpr std::size_t kRefined = 4;  // so many effects of a search are fitted with smooth bodies
 constexpr int kDraws = 2000;
 constexpr double kBlock = 0.2;  // s, a block of the bootstrap
 
-// Parts of the work that are done: in the loop, after the refits without an effect; in a round,
-// after the search. Refits with smooth bodies take the rest.
-constexpr double kDeclaredPart = 0.2, kSearchPart = 0.6;
+// The part of the work that is done after the refits without an effect.
+constexpr double kDeclaredPart = 0.2;
 
 // What stays the same in all rounds.
 struct Inquiry {
@@ -31,8 +28,6 @@ struct Inquiry {
   const DiagnosisOptions& options;
   std::vector<const Effect*> effects;  // those that may be missing
 
-  // Whether bodies may become smooth ones; else they hardly move.
-  bool open() const { return !fitting.bodies()[0].trusted; }
   BootstrapResult Gain(const Verdict& without, const Verdict& with) const {
     return GainOf(fitting, options.seed, without.held, with.held);
   }
@@ -56,14 +51,12 @@ struct Standing {
 struct Attempt {
   Standing beside;  // what it is added to
   std::vector<EffectTrace> traces;
-  std::vector<Verdict> verdicts;  // the best few with smooth bodies, least held-out error first
-  std::vector<Verdict> others;    // those that were not refitted
+  std::vector<Verdict> verdicts;  // least held-out error first
   bool rival_won = false;         // `beside` is the rival of the last round
   std::size_t best = 0;           // an index of `verdicts`
 
   bool found() const { return !verdicts.empty(); }
   const Verdict& chosen() const { return verdicts[best]; }
-  std::size_t tried() const { return verdicts.size() + others.size(); }
 };
 
 // Whether frames to judge by lie between frames to fit.
@@ -111,41 +104,23 @@ std::size_t ChooseAmong(const Inquiry& inquiry, const std::vector<Verdict>& verd
   return ChooseSimplest(scored, BlockOf(inquiry.fitting), inquiry.options.seed);
 }
 
-// The verdicts with smooth bodies, least held-out error first; with bodies that hardly move, as they
-// are.
-std::vector<Verdict> Refine(const Inquiry& inquiry, const WorkShare& stage, const std::string& of,
-                            const std::vector<Verdict>& verdicts) {
-  std::vector<Verdict> refined =
-      inquiry.open() ? RefitSmoothly(inquiry.fitting, stage, of, verdicts) : verdicts;
-  std::stable_sort(refined.begin(), refined.end(),
-                   [](const Verdict& p, const Verdict& q) { return p.track.held < q.track.held; });
-  return refined;
-}
-
 // The model without a new effect, with those that are known; nothing if it diverges.
-std::optional<Standing> FitDeclared(const Inquiry& inquiry, const std::vector<EffectValues>& known,
+std::optional<Standing> FitDeclared(const Fitting& fitting, double noise_floor,
+                                    const std::vector<EffectValues>& known,
                                     const WorkShare& share) {
-  FittedBodies bodies = FitBodies(inquiry.fitting, known, share.Part(0, 0.5));
-  const std::vector<Verdict> free =
-      FitFreely(inquiry.fitting, share.Part(0.5, 0.7), bodies.fitted);
+  FittedBodies bodies = FitBodies(fitting, known, share.Part(0, 0.5));
+  const std::vector<Verdict> free = FitFreely(fitting, share.Part(0.5, 0.7), bodies.fitted);
   if (free.empty()) return {};
-  const Verdict accepted =
-      Refine(inquiry, share.Part(0.7, 1), " without any new effect", {free[0]})[0];
-  return Standing{std::move(bodies), accepted, {}};
+  const bool explained = IsExplained(free[0].track.held, noise_floor);
+  const Verdict refined =
+      explained ? free[0] : Better(free[0], Refine(fitting, share.Part(0.7, 1), free[0]));
+  return Standing{std::move(bodies), refined, {}};
 }
 
-// One search beside what stands, and the best of what it found with smooth bodies.
 Attempt SearchBeside(const Inquiry& inquiry, const Standing& standing, const WorkShare& stage) {
-  Attempt attempt{standing, {}, {}, {}};
-  EffectSearchResult search = SearchEffects(inquiry.fitting, standing.bodies, inquiry.effects,
-                                            stage.Part(0, kSearchPart));
-  attempt.traces = std::move(search.traces);
-  attempt.others = std::move(search.verdicts);
-  const auto last = attempt.others.begin() +
-                    static_cast<std::ptrdiff_t>(std::min(kRefined, attempt.others.size()));
-  attempt.verdicts = Refine(inquiry, stage.Part(kSearchPart, 1), " with effects",
-                            {attempt.others.begin(), last});
-  attempt.others.erase(attempt.others.begin(), last);
+  EffectSearchResult search =
+      SearchEffects(inquiry.fitting, standing.bodies, inquiry.effects, stage);
+  Attempt attempt{standing, std::move(search.traces), std::move(search.verdicts)};
   if (attempt.found()) attempt.best = ChooseAmong(inquiry, attempt.verdicts);
   return attempt;
 }
@@ -156,8 +131,7 @@ Attempt Search(const Inquiry& inquiry, const Standing& standing, const WorkShare
   if (!standing.rival) return SearchBeside(inquiry, standing, stage);
   Attempt first = SearchBeside(inquiry, standing, stage.Part(0, 0.5));
   const Verdict& rival = *standing.rival;
-  Attempt other =
-      SearchBeside(inquiry, {{{}, {rival.descent}}, rival, {}}, stage.Part(0.5, 1));
+  Attempt other = SearchBeside(inquiry, {{{}, {rival.descent}}, rival, {}}, stage.Part(0.5, 1));
   other.rival_won = true;
   if (!other.found()) return first;
   const Verdict& best = other.chosen();
@@ -166,47 +140,25 @@ Attempt Search(const Inquiry& inquiry, const Standing& standing, const WorkShare
   };
   const bool better = is_better_than(standing.accepted) &&
                       (!first.found() || is_better_than(first.verdicts.front()));
-  const Threshold threshold = inquiry.ThresholdFor(other.tried());
+  const Threshold threshold = inquiry.ThresholdFor(other.verdicts.size());
   if (!better || !IsWorthIt(inquiry.Gain(rival, best), rival.track.held, threshold)) return first;
   return other;
 }
 
-// The body of what was chosen, without the effect: what another body gains is no merit of the
-// effect.
-void FitSameBody(const Inquiry& inquiry, const WorkShare& stage, Attempt* attempt) {
-  Standing& beside = attempt->beside;
-  const auto body_of = [](const Descent& descent) { return descent.hypothesis.body; };
-  const std::size_t body = body_of(attempt->chosen().descent);
-  if (body == body_of(beside.accepted.descent)) return;
-  const std::vector<Descent>& fitted = beside.bodies.fitted;
-  const auto same = std::find_if(fitted.begin(), fitted.end(),
-                                 [&](const Descent& fit) { return body_of(fit) == body; });
-  if (same == fitted.end()) return;
-  const std::vector<Verdict> free = FitFreely(inquiry.fitting, stage.Part(0, 0.5), {*same});
-  if (free.empty()) return;
-  beside.accepted = Better(
-      beside.accepted, Refine(inquiry, stage.Part(0.5, 1), " without any new effect", free)[0]);
-}
-
-// Searches for one more effect, unless nothing is left to explain. What is chosen, and what it is
-// compared with, are fitted once more where bodies hardly move.
+// Searches for one more effect, unless nothing is left to explain. What is chosen is fitted once
+// more where it leaves more than noise.
 Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int round,
                        const WorkShare& stage) {
   constexpr double kFound = 0.9;
   if (NothingIsLeft(round, standing.accepted.track.held, inquiry.noise_floor)) {
-    return {standing, {}, {}, {}};
+    return {standing, {}, {}};
   }
   Attempt attempt = Search(inquiry, standing, stage.Part(0, kFound));
   if (!attempt.found()) return attempt;
   Verdict& chosen = attempt.verdicts[attempt.best];
-  const WorkShare share = stage.Part(kFound, 1);
-  if (inquiry.open()) {
-    FitSameBody(inquiry, share, &attempt);
-  } else if (!IsExplained(chosen.track.held, inquiry.noise_floor)) {
-    // what it is compared with comes first: what that gains is no merit of the effect
-    Verdict& accepted = attempt.beside.accepted;
-    accepted = Better(accepted, FollowAgain(inquiry.fitting, share.Part(0, 0.5), accepted));
-    chosen = FollowAgain(inquiry.fitting, share.Part(0.5, 1), chosen);
+  if (!IsExplained(chosen.track.held, inquiry.noise_floor)) {
+    // what it is compared with was fitted as carefully: what that gains is no merit of the effect
+    chosen = Better(chosen, Refine(inquiry.fitting, stage.Part(kFound, 1), chosen));
   }
   return attempt;
 }
@@ -229,9 +181,8 @@ std::string AtBounds(const EffectValues& effect) {
 // Why the effect that was found is not accepted, "NAME: ..."; empty if it is.
 std::string Refusal(const Inquiry& inquiry, const Attempt& attempt) {
   const Verdict &without = attempt.beside.accepted, &with = attempt.chosen();
-  const std::string why =
-      WhyNotWorthIt(inquiry.Gain(without, with), without.track.held,
-                    inquiry.ThresholdFor(attempt.tried()));
+  const std::string why = WhyNotWorthIt(inquiry.Gain(without, with), without.track.held,
+                                        inquiry.ThresholdFor(attempt.verdicts.size()));
   if (!why.empty()) {
     return fmt::format("{}: held out {:.2f} mm without it, {:.2f} mm with it: {}", NameOf(with),
                        1e3 * without.track.held, 1e3 * with.track.held, why);
@@ -252,7 +203,7 @@ std::optional<Verdict> RivalOf(const Inquiry& inquiry, const Attempt& attempt) {
            IsNear(verdict.track.held, attempt.chosen().track.held);
   });
   if (rival == verdicts.end()) return {};
-  const Threshold threshold = inquiry.ThresholdFor(attempt.tried());
+  const Threshold threshold = inquiry.ThresholdFor(attempt.verdicts.size());
   if (!IsWorthIt(inquiry.Gain(without, *rival), without.track.held, threshold)) return {};
   return *rival;
 }
@@ -263,15 +214,13 @@ EffectRanking Rank(const Inquiry& inquiry, const Attempt& attempt) {
     EffectCandidate candidate;
     candidate.name = trace.effect->name();
     candidate.score = trace.score;
-    for (const std::vector<Verdict>& verdicts : {attempt.verdicts, attempt.others}) {
-      for (const Verdict& verdict : verdicts) {
-        if (NameOf(verdict) != candidate.name) continue;
-        candidate.refit = verdict.track;
-        candidate.without = attempt.beside.accepted.track.held;
-        candidate.gain = inquiry.Gain(attempt.beside.accepted, verdict);
-        candidate.values = verdict.system.effects.back();
-        candidate.alike = IsAlike(inquiry.Gain(verdict, attempt.chosen()));
-      }
+    for (const Verdict& verdict : attempt.verdicts) {
+      if (NameOf(verdict) != candidate.name) continue;
+      candidate.refit = verdict.track;
+      candidate.without = attempt.beside.accepted.track.held;
+      candidate.gain = inquiry.Gain(attempt.beside.accepted, verdict);
+      candidate.values = verdict.system.effects.back();
+      candidate.alike = IsAlike(inquiry.Gain(verdict, attempt.chosen()));
     }
     candidates.push_back(std::move(candidate));
   }
@@ -307,7 +256,7 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
                                     const std::optional<Verdict>& trained) {
   const Inquiry inquiry{fitting, noise_floor, options,
                         EffectsFor(fitting.recordings(), fitting.bodies()[0].base)};
-  const auto declared = FitDeclared(inquiry, known, share.Part(0, kDeclaredPart));
+  const auto declared = FitDeclared(fitting, noise_floor, known, share.Part(0, kDeclaredPart));
   if (!declared) return {};
   Standing standing = *declared;
   if (trained) standing.accepted = Better(standing.accepted, *trained);
@@ -316,8 +265,7 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
     const WorkShare stage = ShareOf(share.Part(kDeclaredPart, 1), round, options.most_effects);
     const Attempt attempt = LookForOneMore(inquiry, standing, round, stage);
     if (attempt.rival_won) {
-      findings.rankings.back() =
-          WithoutAlike(findings.rankings.back(), NameOf(standing.accepted));
+      findings.rankings.back() = WithoutAlike(findings.rankings.back(), NameOf(standing.accepted));
     }
     findings.rankings.push_back(Rank(inquiry, attempt));
     standing = attempt.beside;

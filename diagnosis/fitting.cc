@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trainer/bodies/factors.h"
+#include "trainer/bodies/spring_net.h"
 #include "trainer/bodies/start_system.h"
 #include "trainer/motion/observer.h"
 #include "trainer/solvers/levenberg_marquardt.h"
@@ -18,8 +19,10 @@ namespace {
 // recordings found may be wrong by a quarter, but an effect that does the opposite must not undo
 // it.
 constexpr EffectModel::OwnRange kTrusted{0.05, 0.25};
-// Sub-steps a second at most, as in training: common factors leave room for single springs.
-constexpr double kMostRate = 10000, kMostCommonRate = 5000;
+constexpr double kMostCommonRate = 5000;  // sub-steps a second at most
+constexpr int kUpdates = 4;               // of the Jacobian of a smooth body, in a step
+constexpr double kExactTolerance =
+    5e-4;  // an exact fit ends where a step gains less than this part
 // A trusted body may take so many times the sub-steps a second that it came with.
 constexpr double kTrustedRoom = 1.25;
 
@@ -51,6 +54,7 @@ void ScorePrediction(const std::vector<SplitRecording>& recordings,
 
 PieceKey KeyOf(const std::string& kind, const Hypothesis& hypothesis) {
   PieceKey key(kind);
+  if (hypothesis.material) key.Add("smooth").Add(hypothesis.material->from);
   return key.Add(static_cast<double>(hypothesis.body))
       .Add(hypothesis.start_substeps)
       .Add(hypothesis.effects);
@@ -81,7 +85,7 @@ Descent Fitting::Begin(std::size_t body, const std::vector<EffectValues>& effect
     Descent descent{{body, effects, substeps}, {}};
     const EffectModel model = Model(descent.hypothesis);
     descent.x = Eigen::VectorXd::Zero(model.size());
-    EffectProblem problem = MakeProblem(model, bodies_[body], kObserverGains[0], 1);
+    EffectProblem problem = MakeProblem(model, bodies_[body], kObserverGains[0], Care::kRough);
     if (!problem.FixSubsteps(descent.x)) continue;
     const auto r = problem.Residuals(descent.x);
     if (!r || r->squaredNorm() >= best.misfit) continue;
@@ -92,51 +96,76 @@ Descent Fitting::Begin(std::size_t body, const std::vector<EffectValues>& effect
   return best;
 }
 
+Descent Fitting::Smooth(const Descent& fit, SmoothBody::Numbers numbers) const {
+  const EffectModel model = Model(fit.hypothesis);
+  const Eigen::Index own = fit.x.size() - model.effect_size();
+  SpringMassSystem start = model.Apply(fit.x);
+  Descent smooth = fit;
+  const auto added = start.effects.end() - static_cast<long>(fit.hypothesis.effects.size());
+  smooth.hypothesis.effects.assign(added, start.effects.end());
+  start.effects.erase(added, start.effects.end());
+  start.dashpot = start.stiffness * (start.dashpot.sum() / start.stiffness.sum());  // one loss time
+  SmoothBody::Options options{kMostCommonRate};
+  options.numbers = numbers;
+  const SmoothBody body(start, *recordings_[0].recording, SpringNet(), options);
+  Eigen::VectorXd from = fit.x.head(own);
+  if (fit.hypothesis.material) {
+    const Eigen::VectorXd& before = fit.hypothesis.material->from;
+    from.resize(before.size() + own);
+    from << before, fit.x.head(own);
+  }
+  smooth.hypothesis.material = {from, std::make_shared<const SmoothBody>(body)};
+  smooth.x = Eigen::VectorXd::Zero(body.size() + model.effect_size());
+  return smooth;
+}
+
 EffectModel Fitting::Model(const Hypothesis& hypothesis) const {
+  if (hypothesis.material) return EffectModel(hypothesis.material->body, hypothesis.effects);
   const DiagnosisBody& body = bodies_[hypothesis.body];
   return EffectModel(
       CommonFactors(Base(hypothesis.body, hypothesis.start_substeps), *recordings_[0].recording),
       body.trusted ? kTrusted : EffectModel::OwnRange{}, hypothesis.effects);
 }
 
-EffectProblem Fitting::Problem(const Hypothesis& hypothesis, double gain) const {
-  return MakeProblem(Model(hypothesis), bodies_[hypothesis.body], gain, 1);
+EffectProblem Fitting::Problem(const Hypothesis& hypothesis, double gain, Care care) const {
+  return MakeProblem(Model(hypothesis), bodies_[hypothesis.body], gain, care);
 }
 
 EffectProblem Fitting::MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
-                                   int threads) const {
+                                   Care care) const {
   EffectProblem::Options options;
-  options.threads = threads;
-  options.limit_dashpots = model.own().kind(model.own().size() - 1) == Parameters::Kind::kGlobal;
   options.least_rate = kLeastDiagnosisRate;
-  options.most_rate = options.limit_dashpots ? kMostCommonRate : kMostRate;
+  options.most_rate = kMostCommonRate;
   if (body.trusted) {
     const double own = DiagnosisRate(body.base, recordings_[0].recording->fps);
     options.most_rate = std::max(options.most_rate, kTrustedRoom * own);
   }
   options.rollout.controller_velocity = body.controller_velocity;
-  // an observer is for finding the way, which needs fewer digits
-  options.rollout.single_precision = gain > 0;
+  options.rollout.single_precision = care == Care::kRough;
   options.difference =
       DirectionDifference(*recordings_[0].recording, options.rollout.single_precision);
   options.rollout.observer_gain = gain;
   return EffectProblem(model, gain > 0 ? followed_ : recordings_, options);
 }
 
-bool Fitting::DescendOne(double gain, int steps, int threads, Descent* descent) const {
-  EffectProblem problem = Problem(descent->hypothesis, gain);
+bool Fitting::DescendOne(double gain, Care care, int steps, int threads, Descent* descent) const {
+  EffectProblem problem = Problem(descent->hypothesis, gain, care);
   LevenbergMarquardtOptions options;
   options.difference = difference();
   options.threads = threads;
+  if (descent->hypothesis.material) options.updates = kUpdates;
+  if (care == Care::kExact) options.tolerance = kExactTolerance;
   LevenbergMarquardtState state;
   state.x = descent->x;
   state.damping = descent->damping;
   for (int step = 0; step < steps && !state.converged; ++step) {
     PieceKey key = KeyOf("Levenberg-Marquardt", descent->hypothesis);
-    const Eigen::VectorXd after = journal().Get(key.Add(gain).Add(state.x).Add(state.damping), [&] {
-      if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
-      return Pack(LevenbergMarquardtStep(ResidualsOf(problem), state, options));
-    });
+    const Eigen::VectorXd after = journal().Get(
+        key.Add(gain).Add(care == Care::kExact ? 1.0 : 0.0).Add(state.x).Add(state.damping), [&] {
+          if (!problem.FixSubsteps(state.x)) return Eigen::VectorXd();
+          options.precisions = problem.model().Precision(state.x);
+          return Pack(LevenbergMarquardtStep(ResidualsOf(problem), state, options));
+        });
     if (after.size() == 0) return false;
     Unpack(after, &state);
   }
@@ -148,13 +177,13 @@ bool Fitting::DescendOne(double gain, int steps, int threads, Descent* descent) 
   return true;
 }
 
-void Fitting::Descend(double gain, int steps, std::vector<Descent>* descents) const {
+void Fitting::Descend(double gain, Care care, int steps, std::vector<Descent>* descents) const {
   const auto count = static_cast<int>(descents->size());
   const int each = std::max(1, threads_ / std::max(1, count));
   std::vector<char> good(descents->size(), 0);
   ParallelFor(count, threads_, [&](int i) {
     const auto n = static_cast<std::size_t>(i);
-    good[n] = DescendOne(gain, steps, each, &(*descents)[n]) ? 1 : 0;
+    good[n] = DescendOne(gain, care, steps, each, &(*descents)[n]) ? 1 : 0;
   });
   std::vector<Descent> kept;
   for (std::size_t n = 0; n < descents->size(); ++n) {
@@ -177,7 +206,7 @@ std::optional<Verdict> Fitting::JudgeAt(EffectProblem* problem, const Eigen::Vec
 }
 
 std::optional<Verdict> Fitting::Judge(const Descent& descent) const {
-  EffectProblem problem = Problem(descent.hypothesis, 0);
+  EffectProblem problem = Problem(descent.hypothesis, 0, Care::kExact);
   return JudgeAt(&problem, descent.x, descent);
 }
 
@@ -192,14 +221,6 @@ std::vector<Verdict> Fitting::JudgeAll(const std::vector<Descent>& descents) con
     if (verdict) verdicts.push_back(std::move(*verdict));
   }
   return verdicts;
-}
-
-std::optional<Verdict> Fitting::JudgeSystem(const SpringMassSystem& system,
-                                            const Verdict& verdict) const {
-  const EffectModel as_it_is(CommonFactors(system, *recordings_[0].recording), {}, {});
-  const Descent& descent = verdict.descent;
-  EffectProblem problem = MakeProblem(as_it_is, bodies_[descent.hypothesis.body], 0, 1);
-  return JudgeAt(&problem, Eigen::VectorXd::Zero(as_it_is.size()), descent);
 }
 
 }  // namespace physpring

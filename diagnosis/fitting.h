@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits of hypotheses (hypothesis.h): the body's common factors and the effects' parameters
-// together, by Levenberg-Marquardt.
+// Fits of hypotheses (hypothesis.h): the body's numbers and the effects' parameters together, by
+// Levenberg-Marquardt.
 #ifndef PHYSPRING_DIAGNOSIS_FITTING_H_
 #define PHYSPRING_DIAGNOSIS_FITTING_H_
 
@@ -40,22 +40,24 @@ class Fitting {
   // the highest gain. Its x is empty if the motion diverges at each stiffness.
   Descent Begin(std::size_t body, const std::vector<EffectValues>& effects) const;
 
+  // The descent with a smooth body, which begins where the body is.
+  Descent Smooth(const Descent& fit, SmoothBody::Numbers numbers) const;
+
   EffectModel Model(const Hypothesis& hypothesis) const;
+  // Rough fits find the way, in single precision; exact ones go to its end.
+  enum class Care { kRough, kExact };
   // The problem of fitting a hypothesis under an observer of this gain, which sees the fit frames
   // only.
-  EffectProblem Problem(const Hypothesis& hypothesis, double gain) const;
+  EffectProblem Problem(const Hypothesis& hypothesis, double gain, Care care) const;
 
   // Makes at most `steps` steps of Levenberg-Marquardt for each of the descents, on several
   // threads. Those that cannot be evaluated are taken out.
-  void Descend(double gain, int steps, std::vector<Descent>* descents) const;
+  void Descend(double gain, Care care, int steps, std::vector<Descent>* descents) const;
 
   // Predicts everything and judges it; nothing if a motion diverges.
   std::optional<Verdict> Judge(const Descent& descent) const;
   // The verdicts on the descents, in their order. Those that diverge are left out.
   std::vector<Verdict> JudgeAll(const std::vector<Descent>& descents) const;
-
-  // The verdict on another system that comes from the same descent; nothing if its motion diverges.
-  std::optional<Verdict> JudgeSystem(const SpringMassSystem& system, const Verdict& verdict) const;
 
  private:
   SpringMassSystem Base(std::size_t body, double start_substeps) const;
@@ -63,8 +65,8 @@ class Fitting {
   std::optional<Verdict> JudgeAt(EffectProblem* problem, const Eigen::VectorXd& x,
                                  const Descent& descent) const;
   EffectProblem MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
-                            int threads) const;
-  bool DescendOne(double gain, int steps, int threads, Descent* descent) const;
+                            Care care) const;
+  bool DescendOne(double gain, Care care, int steps, int threads, Descent* descent) const;
 
   std::vector<DiagnosisBody> bodies_;
   std::vector<SplitRecording> recordings_;

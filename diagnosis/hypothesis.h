@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The three nouns of a diagnosis.
 //   Hypothesis   what may be the case: one of the bodies, with these effects
-//   Descent      where its fit is: common factors and the effects' values
+//   Descent      where its fit is: the body's numbers and the effects' values
 //   Verdict      a spring-mass system that was judged: its errors, and where it comes from
 #ifndef PHYSPRING_DIAGNOSIS_HYPOTHESIS_H_
 #define PHYSPRING_DIAGNOSIS_HYPOTHESIS_H_
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +16,18 @@
 
 namespace physpring {
 
+// A smooth body, and the numbers of all bodies that it comes from.
+struct SmoothStart {
+  Eigen::VectorXd from;
+  std::shared_ptr<const SmoothBody> body;
+};
+
 struct Hypothesis {
   std::size_t body = 0;               // an index of Fitting::bodies
   std::vector<EffectValues> effects;  // as the search begins with them; the new one is last
   double start_substeps = 0;  // the body's springs begin as stiff as so many sub-steps a frame
+  std::optional<SmoothStart> material =
+      {};  // where the body is a smooth one, not of common factors
 
   // How many parameters all effects have.
   Eigen::Index ParameterCount() const {
@@ -32,7 +42,8 @@ struct Hypothesis {
 
 struct Descent {
   Hypothesis hypothesis;
-  Eigen::VectorXd x;  // common factors, then effects (effect_model.h); empty: no motion is stable
+  Eigen::VectorXd
+      x;  // the body's numbers, then effects (effect_model.h); empty: no motion is stable
   // The mean of r^2, m^2, when the descent was last fitted.
   double misfit = std::numeric_limits<double>::infinity();
   double damping = 1e-2;
@@ -45,8 +56,8 @@ struct TrackPair {
 };
 
 struct Verdict {
-  enum class Provenance { kCommonFactors, kSmooth, kTraining };
-  Provenance provenance = Provenance::kCommonFactors;
+  enum class Provenance { kRefit, kTraining };
+  Provenance provenance = Provenance::kRefit;
   Descent descent;  // what it comes from; a training has none
   SpringMassSystem system;
   bool controller_velocity = true;  // whether dashpots feel that

@@ -29,7 +29,7 @@ std::optional<Verdict> FitAllFrames(const Fitting& fitting, const WorkShare& sha
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kSteps; ++step) {
     descents[0].converged = false;
-    fitting_all.Descend(0, 1, &descents);
+    fitting_all.Descend(0, Fitting::Care::kExact, 1, &descents);
     if (descents.empty()) return {};
     if (descents[0].misfit > (1 - kTolerance) * before) break;
     before = descents[0].misfit;

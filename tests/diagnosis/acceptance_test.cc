@@ -13,7 +13,7 @@ namespace physpring {
 namespace {
 
 // Noise floor 1; among five effects; the rest as in DiagnosisOptions.
-constexpr Threshold kThreshold{1, 0.05, 0.4, 0.2, 5};
+constexpr Threshold kThreshold{1, 0.05, 0.6, 0.3, 5};
 
 BootstrapResult Gain(double mean, double p = 0.0005, double error = 0.01) {
   BootstrapResult gain;
@@ -23,11 +23,9 @@ BootstrapResult Gain(double mean, double p = 0.0005, double error = 0.01) {
   return gain;
 }
 
-PairedErrors Compare(double without, double with) { return {without, with, Gain(without - with)}; }
-
-TEST(NothingIsLeft, WithinAQuarterOfTheNoiseOrTwiceItOnceAnEffectWasFound) {
-  EXPECT_TRUE(NothingIsLeft(0, 1.2, 1));
-  EXPECT_FALSE(NothingIsLeft(0, 1.3, 1));
+TEST(NothingIsLeft, WithinATwentiethOfTheNoiseOrTwiceItOnceAnEffectWasFound) {
+  EXPECT_TRUE(NothingIsLeft(0, 1.04, 1));
+  EXPECT_FALSE(NothingIsLeft(0, 1.06, 1));
   EXPECT_TRUE(NothingIsLeft(1, 1.9, 1));
   EXPECT_FALSE(NothingIsLeft(1, 2.1, 1));
 }
@@ -83,15 +81,17 @@ TEST(IsNear, WithinAQuarterOfTheError) {
   EXPECT_FALSE(IsNear(1.3, 1));
 }
 
-TEST(IsWorthIt, ExplainsTwoFifthsOfTheErrorAboveTheNoise) {
-  EXPECT_TRUE(IsWorthIt(Gain(1.7), 5, kThreshold));
-  EXPECT_FALSE(IsWorthIt(Gain(1.5), 5, kThreshold));
+// sqrt(25 - 0.6 (25 - 1)) = 3.26
+TEST(IsWorthIt, ExplainsThreeFifthsOfTheSquaredErrorAboveTheNoise) {
+  EXPECT_TRUE(IsWorthIt(Gain(1.76), 5, kThreshold));
+  EXPECT_FALSE(IsWorthIt(Gain(1.72), 5, kThreshold));
 }
 
-TEST(IsWorthIt, ExplainsAFifthOfTheNoise) {
-  EXPECT_TRUE(IsWorthIt(Gain(0.21), 1.3, kThreshold));
-  EXPECT_FALSE(IsWorthIt(Gain(0.19), 1.3, kThreshold));
-  EXPECT_FALSE(IsWorthIt(Gain(0.19), 0.9, kThreshold));  // no error above the noise
+// sqrt(1.1^2 - 0.3^2) = 1.058
+TEST(IsWorthIt, ExplainsAsMuchAsThreeTenthsOfTheNoiseWouldAdd) {
+  EXPECT_TRUE(IsWorthIt(Gain(0.045), 1.1, kThreshold));
+  EXPECT_FALSE(IsWorthIt(Gain(0.04), 1.04, kThreshold));
+  EXPECT_FALSE(IsWorthIt(Gain(0.04), 0.9, kThreshold));  // no error above the noise
 }
 
 TEST(IsWorthIt, BeatsChanceAmongAllThatWereTried) {
@@ -103,13 +103,14 @@ TEST(IsWorthIt, BeatsChanceAmongAllThatWereTried) {
 }
 
 TEST(WhyNotWorthIt, NamesTheConditionThatFailsWithItsNumbers) {
-  EXPECT_EQ(WhyNotWorthIt(Gain(1.7), 5, kThreshold), "");
+  EXPECT_EQ(WhyNotWorthIt(Gain(1.8), 5, kThreshold), "");
   EXPECT_EQ(WhyNotWorthIt(Gain(1.2), 5, kThreshold),
-            "it takes 30 % of the error above the noise, more than 40 % are asked");
+            "it takes 44 % of the squared error above the noise, more than 60 % are asked");
   EXPECT_EQ(WhyNotWorthIt(Gain(4, 0.03), 5, kThreshold),
             "its gain may be chance: p is 0.03, below 0.01 is asked");
-  EXPECT_EQ(WhyNotWorthIt(Gain(0.19), 0.9, kThreshold),
-            "it gains 190 mm, more than 200 mm, a part of the noise, are asked");
+  EXPECT_EQ(WhyNotWorthIt(Gain(0.04), 1.04, kThreshold),
+            "it takes 286 mm off the error, in squares, more than 300 mm, a part of the noise, are "
+            "asked");
 }
 
 // A fit whose held-out errors are `mean` in the mean, each up to 1 off.

@@ -21,9 +21,13 @@ Eigen::VectorXd RandomRows(std::uint64_t seed) {
   return rows;
 }
 
+Eigen::MatrixXd Prior(int entries) {
+  return kDiagnosisPrecision * Eigen::MatrixXd::Identity(entries, entries);
+}
+
 TEST(CertaintyFrom, HasTheErrorOfAMeanOfIndependentResiduals) {
   const Eigen::VectorXd r = RandomRows(1);
-  const auto certainty = CertaintyFrom(Eigen::MatrixXd::Ones(kRows, 1), r, 0);
+  const auto certainty = CertaintyFrom(Eigen::MatrixXd::Ones(kRows, 1), r, Prior(1), 0);
   ASSERT_EQ(certainty.size(), 1U);
   const double expected = std::sqrt(r.squaredNorm() / kRows / kRows);
   EXPECT_GE(certainty[0].error, 0.99 * expected);
@@ -37,7 +41,7 @@ TEST(CertaintyFrom, WidensWhereNeighboursAreAlike) {
   // each tenth of a stretch is one value: as many draws fewer
   constexpr int kAlike = kRows / 200;
   for (int i = 0; i < kRows; ++i) r[i] = r[i - i % kAlike];
-  const auto certainty = CertaintyFrom(Eigen::MatrixXd::Ones(kRows, 1), r, 0);
+  const auto certainty = CertaintyFrom(Eigen::MatrixXd::Ones(kRows, 1), r, Prior(1), 0);
   const double independent = std::sqrt(r.squaredNorm() / kRows / kRows);
   EXPECT_NEAR(certainty[0].error / (std::sqrt(kAlike) * independent), 1, 3 / std::sqrt(38.0));
 }
@@ -45,7 +49,7 @@ TEST(CertaintyFrom, WidensWhereNeighboursAreAlike) {
 TEST(CertaintyFrom, SaysWhatOthersCouldDoAsWell) {
   Eigen::MatrixXd jacobian(kRows, 3);
   jacobian << RandomRows(1), RandomRows(1) + 0.1 * RandomRows(2), RandomRows(3);
-  const auto certainty = CertaintyFrom(jacobian, RandomRows(4), 1);
+  const auto certainty = CertaintyFrom(jacobian, RandomRows(4), Prior(3), 1);
   ASSERT_EQ(certainty.size(), 2U);                    // the first entry is not asked for
   EXPECT_NEAR(certainty[0].shared, 1 / 1.01, 0.002);  // squared correlation of the two
   EXPECT_LT(certainty[1].shared, 0.01);
@@ -54,7 +58,7 @@ TEST(CertaintyFrom, SaysWhatOthersCouldDoAsWell) {
 TEST(CertaintyFrom, SaysWhatTheRecordingsSayNothingAbout) {
   Eigen::MatrixXd jacobian(kRows, 2);
   jacobian << RandomRows(1), Eigen::VectorXd::Zero(kRows);
-  const auto certainty = CertaintyFrom(jacobian, RandomRows(2), 0);
+  const auto certainty = CertaintyFrom(jacobian, RandomRows(2), Prior(2), 0);
   EXPECT_LT(certainty[0].unknown, 0.01);
   EXPECT_NEAR(certainty[1].unknown, 1, 1e-9);
 }

@@ -4,9 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
-#include "diagnosis/effect_problem.h"
 #include "tests/support/random_system.h"
+#include "trainer/bodies/spring_net.h"
 
 namespace physpring {
 namespace {
@@ -62,40 +63,26 @@ TEST(EffectModel, KeepsTheEffectsOfTheBase) {
   EXPECT_EQ(system.effects[1].name, "air_drag");
 }
 
-// The adjoint J^T u and the differences J v of the whole problem: u . J v = J^T u . v; with an
-// effect of the base, too.
-class AdjointOfTheProblem : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(BaseHasAnEffect, AdjointOfTheProblem, testing::Bool());
-
-TEST_P(AdjointOfTheProblem, IsTransposedToItsDifferences) {
-  Random random(2);
+// A smooth body's numbers come before those of effects, with the body's own prior.
+TEST(EffectModel, MovesASmoothBody) {
   SpringMassSystem base = RandomSystem(25, 2, 1);
-  if (GetParam()) base.effects = {{"gravity_direction", Eigen::Vector2d(0.1, 0)}};
+  base.dashpot = 1e-3 * base.stiffness;
   Recording recording;
   recording.fps = 50;
-  recording.start = base.position;
-  recording.velocity = Points::Zero(3, 25);
-  for (int t = 0; t < 6; ++t) {
-    recording.points.emplace_back(base.position.leftCols(25) + random.Box(25, 0.01));
-    recording.controllers.emplace_back(base.position.rightCols(2) + t * random.Box(2, 0.002));
-  }
-  std::vector<SplitRecording> split{
-      {&recording, std::vector<SplitRecording::Use>(6, SplitRecording::Use::kFit)}};
-  split[0].use[0] = SplitRecording::Use::kNone;
-  split[0].use[3] = SplitRecording::Use::kHeld;
-  EffectProblem problem(MakeModel(base), split, {});
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.model().size());
-  x.head(problem.model().own().size()).setConstant(0.7);
-  x[x.size() - 1] = -1;  // away from the bound
-  const auto r = problem.Linearise(x);
-  ASSERT_TRUE(r);
-  EXPECT_EQ(r->size(), 3 * 25 * 4);
-  Eigen::VectorXd u(r->size()), v(x.size());
-  for (double& value : u) value = random(-1, 1);
-  for (double& value : v) value = random(-1, 1);
-  const double forward = u.dot(problem.JacobianTimes(v));
-  // forward differences over 1e-5
-  EXPECT_NEAR(problem.JacobianTransposedTimes(u).dot(v), forward, 1e-3 * std::abs(forward));
+  const auto body =
+      std::make_shared<const SmoothBody>(base, recording, SpringNet(), SmoothBody::Options{1e6});
+  const EffectModel model(body, {{"tension_only", Eigen::VectorXd::Constant(1, 0.4)}});
+  ASSERT_EQ(model.size(), body->size() + 1);
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.2, 0.2);
+  const SpringMassSystem system = model.Apply(x), alone = body->Apply(x.head(body->size()));
+  EXPECT_EQ(system.stiffness, alone.stiffness);
+  EXPECT_EQ(system.dashpot, alone.dashpot);
+  ASSERT_EQ(system.effects.size(), 1U);
+  EXPECT_GT(system.effects[0].values[0], 0.4);
+  const Eigen::MatrixXd precision = model.Precision(x);
+  const int own = body->size();
+  EXPECT_EQ(precision.topLeftCorner(own, own), body->Precision(x.head(own)));
+  EXPECT_EQ(precision(own, own), kDiagnosisPrecision);
 }
 
 }  // namespace

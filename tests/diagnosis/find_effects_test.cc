@@ -50,7 +50,7 @@ TEST_F(NothingToFind, TakesTheTwinAsItCameOnlyIfItPredictsBetter) {
   trained.track.held = 0;
   EXPECT_EQ(Find(trained)->before.provenance, Verdict::Provenance::kTraining);
   trained.track.held = kLoud;
-  EXPECT_EQ(Find(trained)->before.provenance, Verdict::Provenance::kCommonFactors);
+  EXPECT_EQ(Find(trained)->before.provenance, Verdict::Provenance::kRefit);
 }
 
 TEST_F(NothingToFind, SaysWhenTheModelDiverges) {

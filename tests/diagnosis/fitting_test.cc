@@ -33,7 +33,7 @@ Fitting FittingOf(const Recording& recording) {
 Eigen::VectorXd ResidualsAt(const Recording& recording, double gain) {
   const Fitting fitting = FittingOf(recording);
   const Descent descent = fitting.Begin(0, {});
-  EffectProblem problem = fitting.Problem(descent.hypothesis, gain);
+  EffectProblem problem = fitting.Problem(descent.hypothesis, gain, Fitting::Care::kRough);
   problem.FixSubsteps(descent.x);
   return *problem.Residuals(descent.x);
 }
@@ -65,13 +65,31 @@ TEST(Fitting, JudgesWithoutAnObserver) {
   const Recording other = WithOtherHeldFrames(recording);
   const Fitting fitting = FittingOf(recording), judged = FittingOf(other);
   std::vector<Descent> descents = {fitting.Begin(0, {})};
-  fitting.Descend(0.5, 2, &descents);
+  fitting.Descend(0.5, Fitting::Care::kRough, 2, &descents);
   ASSERT_EQ(descents.size(), 1U);
   const auto verdict = fitting.Judge(descents[0]), same = judged.Judge(descents[0]);
   ASSERT_TRUE(verdict);
   ASSERT_TRUE(same);
   EXPECT_EQ(verdict->track.fit, same->track.fit);
   EXPECT_NE(verdict->track.held, same->track.held);
+}
+
+// All springs then have one loss time, the mean one.
+TEST(Fitting, ASmoothBodyBeginsWhereItsDescentIs) {
+  const Recording recording = SofterRope();
+  const DiagnosisBody body{MakeStartSystem(recording, {}), true, false, "rope"};
+  const Fitting fitting({body}, {HoldOutFrames(recording)}, 1);
+  Descent descent = fitting.Begin(0, {{"gravity_direction", Eigen::Vector2d(0.1, 0)}});
+  descent.x.setConstant(0.2);
+  const Descent smooth = fitting.Smooth(descent);
+  const SpringMassSystem before = fitting.Model(descent.hypothesis).Apply(descent.x);
+  const SpringMassSystem after = fitting.Model(smooth.hypothesis).Apply(smooth.x);
+  EXPECT_LT((after.stiffness - before.stiffness).norm(), 1e-12 * before.stiffness.norm());
+  EXPECT_NEAR(after.dashpot.sum(), before.dashpot.sum(), 1e-12 * before.dashpot.sum());
+  EXPECT_EQ(after.drag, before.drag);
+  ASSERT_EQ(after.effects.size(), 1U);
+  EXPECT_EQ(after.effects[0].values, before.effects[0].values);
+  EXPECT_NE(KeyOf("a", smooth.hypothesis).Hash(), KeyOf("a", descent.hypothesis).Hash());
 }
 
 TEST(Fitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
@@ -83,7 +101,9 @@ TEST(Fitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
   const Fitting fitting({{stiff, true, true, "rope"}}, {HoldOutFrames(recording)}, 1);
   const Descent descent = fitting.Begin(0, {});
   ASSERT_TRUE(std::isfinite(descent.misfit));
-  EXPECT_EQ(fitting.Problem(descent.hypothesis, 0).SystemAt(descent.x).dashpot, stiff.dashpot);
+  EXPECT_EQ(
+      fitting.Problem(descent.hypothesis, 0, Fitting::Care::kExact).SystemAt(descent.x).dashpot,
+      stiff.dashpot);
 }
 
 }  // namespace

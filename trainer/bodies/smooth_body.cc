@@ -11,7 +11,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kModes = 14;
+constexpr int kModes = 14, kFewModes = 6;
 // Of irregular meshes. Springs that are superfluous begin at some length: within one class they
 // could not be told from true ones.
 constexpr int kEqualClasses = 30;
@@ -24,10 +24,10 @@ ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& r
                                const BodyKind& kind, const SmoothBody::Options& body) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
-  options.free_effects = body.free_effects;
   options.class_dashpots = false;
+  const bool few = body.numbers == SmoothBody::Numbers::kFew;
   options.classes = {kClassJump, kEqualClasses, body.hands_apart, body.directions};
-  options.modes = SpringModes(start, kModes);
+  options.modes = SpringModes(start, few ? kFewModes : kModes);
   return options;
 }
 

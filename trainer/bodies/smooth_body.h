@@ -17,11 +17,12 @@ namespace physpring {
 
 class SmoothBody {
  public:
+  enum class Numbers { kAll, kFew };  // few modes: for a search among many bodies
   struct Options {
     double most_rate;          // the most sub-steps a second; whole ones a frame, at least one
     bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
     bool directions = false;   // so are springs of other directions
-    int free_effects = 0;      // so many of the system's effects move, too, the last ones
+    Numbers numbers = Numbers::kAll;
   };
 
   // `start`: the system at x = 0, whose springs have one loss time.
