@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kTracedEffects = 6;  // no more than these are tried on fitted bodies
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-constexpr char kWithoutEffect[] = " without any new effect";
+constexpr std::size_t kMostStrong = 4;
+constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
 // How many steps all fits make, and how many fits go on after that: in all, and with one effect.
 struct Cut {
@@ -25,13 +26,14 @@ struct Cut {
   Fitting::Care care = Fitting::Care::kRough;
 };
 // In this order: bodies of common factors under the highest gain, and the best ones as smooth
-// bodies; those down to the gain of the trace, and down to none; laws with common factors; all
-// effects; one fit once more.
+// bodies; those down to the gain of the trace, and down to none; laws with common factors, strong
+// ones on all bodies; all effects; one fit once more.
 constexpr std::array<Cut, 1> kCommonBodyCuts = {{{0.5, 5, 2, 2}}};
 constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 4, 1, 1}}};
 constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 4, 1}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
+constexpr std::array<Cut, 2> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 6, 4, 3}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.2, 2, 8, 2}, {0.1, 3, 5, 1}, {0, 15, 5, 1}}};
 constexpr std::array<Cut, 3> kAgainCuts = {
     {{0.2, 3, 1, 1}, {0.1, 3, 1, 1}, {0, 15, 1, 1, Fitting::Care::kExact}}};
@@ -103,22 +105,43 @@ Descent With(const Descent& fit, const EffectTrace& trace) {
   return with;
 }
 
-// The laws that fit best. They change bodies so much that common factors begin anew.
+// The laws that fit best. They change bodies so much that common factors begin anew; so does the
+// body alone that they are compared with, whose steps the journal has already. Strong laws meet all
+// bodies.
 std::vector<Descent> FitLaws(const Fitting& fitting, const Descent& body,
                              const std::vector<const Effect*>& effects, const WorkShare& stage) {
   std::vector<Descent> fits;
   const Hypothesis& hypothesis = body.hypothesis;
+  const auto add = [&](std::size_t n, const EffectValues& law) {
+    std::vector<EffectValues> values = hypothesis.effects;
+    values.push_back(law);
+    Descent fit = fitting.Begin(n, values);
+    if (fit.x.size() > 0) fits.push_back(std::move(fit));
+  };
+  std::vector<Descent> alone = {fitting.Begin(hypothesis.body, hypothesis.effects)};
+  Halve(fitting, kLawCuts, stage.Part(0, 0.03), kWithoutEffect, &alone);
   const SpringMassSystem system = fitting.Model(hypothesis).Apply(body.x);
   for (const Effect* effect : effects) {
     for (const Eigen::VectorXd& start : effect->Starts(system)) {
-      if (!effect->MakeTension(start)) continue;
-      std::vector<EffectValues> values = hypothesis.effects;
-      values.push_back({effect->name(), start});
-      Descent fit = fitting.Begin(hypothesis.body, values);
-      if (fit.x.size() > 0) fits.push_back(std::move(fit));
+      if (effect->MakeTension(start)) add(hypothesis.body, {effect->name(), start});
     }
   }
-  Halve(fitting, kLawCuts, stage, " with another law", &fits);
+  Halve(fitting, kLawCuts, stage.Part(0.03, 0.5), kWithLaw, &fits);
+  std::vector<EffectValues> strong;
+  for (const Descent& fit : fits) {
+    if (alone.empty() || IsStrongLaw(fit.misfit, alone.front().misfit)) {
+      strong.push_back(fit.hypothesis.effects.back());
+    }
+  }
+  if (!strong.empty()) {
+    strong.resize(std::min(strong.size(), kMostStrong));
+    fits.clear();
+    for (const EffectValues& law : strong) {
+      for (std::size_t n = 0; n < fitting.bodies().size(); ++n) add(n, law);
+    }
+    Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
+  }
+  Keep(kMostStrong, strong.empty() ? 1 : 2, &fits);
   return SmoothAll(fitting, fits);
 }
 
