@@ -210,12 +210,12 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
   return result;
 }
 
-Verdict Refine(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict) {
-  std::vector<Descent> again = SmoothAll(fitting, {verdict.descent}, SmoothBody::Numbers::kAll);
+std::optional<Verdict> Refine(const Fitting& fitting, const WorkShare& stage,
+                              const Descent& descent) {
+  std::vector<Descent> again = SmoothAll(fitting, {descent}, SmoothBody::Numbers::kAll);
   Halve(fitting, kAgainCuts, stage, " once more", &again);
-  if (again.empty() || again[0].misfit >= verdict.descent.misfit) return verdict;
-  const std::optional<Verdict> better = fitting.Judge(again[0]);
-  return better ? *better : verdict;
+  if (again.empty()) return {};
+  return fitting.Judge(again[0]);
 }
 
 }  // namespace physpring

@@ -15,6 +15,7 @@
 #ifndef PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 
+#include <optional>
 #include <vector>
 
 #include "diagnosis/effect_trace.h"
@@ -45,10 +46,11 @@ struct EffectSearchResult {
 EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
-// The verdict, fitted once more from where it is, under an observer and then without one: a smooth
-// body with all its numbers. A body that hardly moves may come nearer to its least in this way. The
-// same verdict where that fits worse.
-Verdict Refine(const Fitting& fitting, const WorkShare& stage, const Verdict& verdict);
+// The descent, fitted once more from where it is, under an observer and then without one: a smooth
+// body with all its numbers. A body that hardly moves may come nearer to its least in this way.
+// Nothing if the motion diverges.
+std::optional<Verdict> Refine(const Fitting& fitting, const WorkShare& stage,
+                              const Descent& descent);
 
 }  // namespace physpring
 

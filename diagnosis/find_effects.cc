@@ -87,9 +87,9 @@ Eigen::Index NewParametersOf(const Verdict& verdict) {
   return verdict.descent.hypothesis.NewParameters();
 }
 
-// The second verdict only if it predicts the held-out frames better.
-Verdict Better(const Verdict& verdict, const Verdict& offered) {
-  return offered.track.held < verdict.track.held ? offered : verdict;
+// The second verdict only if there is one and it predicts the held-out frames better.
+Verdict Better(const Verdict& verdict, const std::optional<Verdict>& offered) {
+  return offered && offered->track.held < verdict.track.held ? *offered : verdict;
 }
 
 int BlockOf(const Fitting& fitting) {
@@ -112,9 +112,11 @@ std::optional<Standing> FitDeclared(const Fitting& fitting, double noise_floor,
   const std::vector<Verdict> free = FitFreely(fitting, share.Part(0.5, 0.7), bodies.fitted);
   if (free.empty()) return {};
   const bool explained = IsExplained(free[0].track.held, noise_floor);
-  const Verdict refined =
-      explained ? free[0] : Better(free[0], Refine(fitting, share.Part(0.7, 1), free[0]));
-  return Standing{std::move(bodies), refined, {}};
+  Standing standing{std::move(bodies), free[0], {}};
+  if (!explained) {
+    standing.accepted = Better(free[0], Refine(fitting, share.Part(0.7, 1), free[0].descent));
+  }
+  return standing;
 }
 
 Attempt SearchBeside(const Inquiry& inquiry, const Standing& standing, const WorkShare& stage) {
@@ -145,11 +147,20 @@ Attempt Search(const Inquiry& inquiry, const Standing& standing, const WorkShare
   return other;
 }
 
+// Why what was chosen is not worth it, compared with the best fit without it; empty if it is.
+std::string WhyNotWorthIt(const Inquiry& inquiry, const Attempt& attempt) {
+  const Verdict &without = attempt.beside.accepted, &with = attempt.chosen();
+  return WhyNotWorthIt(inquiry.Gain(without, with), without.track.held,
+                       inquiry.ThresholdFor(attempt.verdicts.size()));
+}
+
 // Searches for one more effect, unless nothing is left to explain. What is chosen is fitted once
-// more where it leaves more than noise.
+// more where it leaves more than noise. Then it is left out again, and the body fitted from where
+// it is: what another valley gains is no merit of the effect.
 Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int round,
                        const WorkShare& stage) {
-  constexpr double kFound = 0.9;
+  constexpr double kFound = 0.8, kChosen = 0.9;
+  const Fitting& fitting = inquiry.fitting;
   if (NothingIsLeft(round, standing.accepted.track.held, inquiry.noise_floor)) {
     return {standing, {}, {}};
   }
@@ -157,9 +168,12 @@ Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int rou
   if (!attempt.found()) return attempt;
   Verdict& chosen = attempt.verdicts[attempt.best];
   if (!IsExplained(chosen.track.held, inquiry.noise_floor)) {
-    // what it is compared with was fitted as carefully: what that gains is no merit of the effect
-    chosen = Better(chosen, Refine(inquiry.fitting, stage.Part(kFound, 1), chosen));
+    chosen = Better(chosen, Refine(fitting, stage.Part(kFound, kChosen), chosen.descent));
   }
+  if (!WhyNotWorthIt(inquiry, attempt).empty()) return attempt;
+  Verdict& without = attempt.beside.accepted;
+  without =
+      Better(without, Refine(fitting, stage.Part(kChosen, 1), chosen.descent.WithoutNewEffect()));
   return attempt;
 }
 
@@ -181,8 +195,7 @@ std::string AtBounds(const EffectValues& effect) {
 // Why the effect that was found is not accepted, "NAME: ..."; empty if it is.
 std::string Refusal(const Inquiry& inquiry, const Attempt& attempt) {
   const Verdict &without = attempt.beside.accepted, &with = attempt.chosen();
-  const std::string why = WhyNotWorthIt(inquiry.Gain(without, with), without.track.held,
-                                        inquiry.ThresholdFor(attempt.verdicts.size()));
+  const std::string why = WhyNotWorthIt(inquiry, attempt);
   if (!why.empty()) {
     return fmt::format("{}: held out {:.2f} mm without it, {:.2f} mm with it: {}", NameOf(with),
                        1e3 * without.track.held, 1e3 * with.track.held, why);

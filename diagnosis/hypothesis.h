@@ -48,6 +48,14 @@ struct Descent {
   double misfit = std::numeric_limits<double>::infinity();
   double damping = 1e-2;
   bool converged = false;
+
+  // The same without the new effect.
+  Descent WithoutNewEffect() const {
+    Descent without = *this;
+    without.x.conservativeResize(x.size() - hypothesis.NewParameters());
+    without.hypothesis.effects.pop_back();
+    return without;
+  }
 };
 
 // Mean track errors, m; NaN where there are no such frames.

@@ -81,7 +81,7 @@ TEST(Fitting, ASmoothBodyBeginsWhereItsDescentIs) {
   const Fitting fitting({body}, {HoldOutFrames(recording)}, 1);
   Descent descent = fitting.Begin(0, {{"gravity_direction", Eigen::Vector2d(0.1, 0)}});
   descent.x.setConstant(0.2);
-  const Descent smooth = fitting.Smooth(descent);
+  const Descent smooth = fitting.Smooth(descent, SmoothBody::Numbers::kAll);
   const SpringMassSystem before = fitting.Model(descent.hypothesis).Apply(descent.x);
   const SpringMassSystem after = fitting.Model(smooth.hypothesis).Apply(smooth.x);
   EXPECT_LT((after.stiffness - before.stiffness).norm(), 1e-12 * before.stiffness.norm());
