@@ -72,14 +72,18 @@ std::string WhyNotWorthIt(const BootstrapResult& gain, double without, const Thr
 
 bool IsNear(double error, double chosen_error) { return error < kNear * chosen_error; }
 
-std::size_t ChooseSimplest(const std::vector<Scored>& fits, int block, std::uint64_t seed) {
+std::size_t ChooseSimplest(const std::vector<Scored>& fits, double noise_floor, int block,
+                           std::uint64_t seed) {
   const auto least = std::min_element(
       fits.begin(), fits.end(), [](const Scored& p, const Scored& q) { return p.mean < q.mean; });
   auto chosen = static_cast<std::size_t>(least - fits.begin());
   for (std::size_t i = 0; i < fits.size(); ++i) {
     if (fits[i].parameters >= fits[chosen].parameters) continue;
     const std::vector<double> worse = Difference(fits[i].held, least->held);
-    if (IsAlike(BlockBootstrap(worse, block, kSimplestDraws, seed))) chosen = i;
+    if (IsExplained(fits[i].mean, noise_floor) ||
+        IsAlike(BlockBootstrap(worse, block, kSimplestDraws, seed))) {
+      chosen = i;
+    }
   }
   return chosen;
 }

@@ -70,8 +70,10 @@ struct Scored {
 };
 
 // Which of `fits` to take: the one with the fewest parameters among those as good as the one with
-// the least error. `block`: frames that are drawn together. `fits` is not empty.
-std::size_t ChooseSimplest(const std::vector<Scored>& fits, int block, std::uint64_t seed);
+// the least error, or no worse than noise. `block`: frames that are drawn together. `fits` is not
+// empty.
+std::size_t ChooseSimplest(const std::vector<Scored>& fits, double noise_floor, int block,
+                           std::uint64_t seed);
 
 }  // namespace physpring
 

@@ -25,18 +25,18 @@ struct Cut {
   std::size_t kept, of_an_effect;
   Fitting::Care care = Fitting::Care::kRough;
 };
-// In this order: bodies of common factors under the highest gain, and the best ones as smooth
-// bodies; those down to the gain of the trace, and down to none; laws with common factors, strong
-// ones on all bodies; all effects; one fit once more.
-constexpr std::array<Cut, 1> kCommonBodyCuts = {{{0.5, 5, 2, 2}}};
-constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 4, 1, 1}}};
-constexpr std::array<Cut, 2> kBodyCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
+// In this order: bodies under the highest gain; the best ones as smooth bodies down to the gain of
+// the trace, and down to none; laws, strong ones on all bodies, and all effects from the start on;
+// all effects with smooth bodies; one fit once more.
+constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 2, 2}}};
+constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 4, 1, 1}, {0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
 constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
 constexpr std::array<Cut, 2> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 6, 4, 3}}};
+constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.2, 2, 8, 2}, {0.1, 3, 5, 1}, {0, 15, 5, 1}}};
 constexpr std::array<Cut, 3> kAgainCuts = {
-    {{0.2, 3, 1, 1}, {0.1, 3, 1, 1}, {0, 15, 1, 1, Fitting::Care::kExact}}};
+    {{0.2, 3, 1, 1}, {0.1, 3, 1, 1}, {0, 40, 1, 1, Fitting::Care::kExact}}};
 
 bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
 
@@ -142,7 +142,7 @@ std::vector<Descent> FitLaws(const Fitting& fitting, const Descent& body,
     Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
   }
   Keep(kMostStrong, strong.empty() ? 1 : 2, &fits);
-  return SmoothAll(fitting, fits);
+  return fits;
 }
 
 // The traces with the best scores, as far as they are worth a refit.
@@ -162,6 +162,20 @@ void AddTraced(const Descent& fit, const std::vector<EffectTrace>& traces,
   for (const EffectTrace& trace : BestTraces(traces)) fits->push_back(With(fit, trace));
 }
 
+// Fits with effects on bodies that were fitted under the highest gain only. They become smooth once
+// the effect is there.
+std::vector<Descent> FitFromStart(const Fitting& fitting, const std::vector<Descent>& bodies,
+                                  const std::vector<const Effect*>& effects,
+                                  const WorkShare& stage) {
+  if (bodies.empty()) return {};
+  std::vector<Descent> fits = FitLaws(fitting, bodies.front(), effects, stage.Part(0, 0.4));
+  const std::vector<EffectTrace> traces =
+      TraceEffects(fitting, bodies.front(), effects, kEarlyTraceGain, stage.Part(0.4, 0.6));
+  for (const Descent& body : bodies) AddTraced(body, traces, &fits);
+  Halve(fitting, kEarlyCuts, stage.Part(0.6, 1), " from the start on", &fits);
+  return SmoothAll(fitting, fits);
+}
+
 }  // namespace
 
 FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
@@ -172,11 +186,10 @@ FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& 
     Descent fit = fitting.Begin(body, known);
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
-  Halve(fitting, kCommonBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
-  fits = SmoothAll(fitting, fits);
-  Halve(fitting, kEarlyBodyCuts, stage.Part(0.3, 0.6), kWithoutEffect, &fits);
+  Halve(fitting, kEarlyBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
   bodies.early = fits;
-  Halve(fitting, kBodyCuts, stage.Part(0.6, 1), kWithoutEffect, &fits);
+  fits = SmoothAll(fitting, fits);
+  Halve(fitting, kBodyCuts, stage.Part(0.3, 1), kWithoutEffect, &fits);
   return bodies;
 }
 
@@ -190,13 +203,7 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
                                  const std::vector<const Effect*>& effects,
                                  const WorkShare& stage) {
   EffectSearchResult result;
-  std::vector<Descent> fits;
-  if (!bodies.early.empty()) {
-    const Descent& early = bodies.early.front();
-    fits = FitLaws(fitting, early, effects, stage.Part(0, 0.1));
-    AddTraced(early, TraceEffects(fitting, early, effects, kEarlyTraceGain, stage.Part(0.1, 0.2)),
-              &fits);
-  }
+  std::vector<Descent> fits = FitFromStart(fitting, bodies.early, effects, stage.Part(0, 0.2));
   const Descent& fitted = bodies.fitted.front();
   result.traces = TraceEffects(fitting, fitted, effects, kTraceGain, stage.Part(0.2, 0.3));
   AddTraced(fitted, result.traces, &fits);

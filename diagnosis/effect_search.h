@@ -8,10 +8,10 @@
 //
 // A body that is fitted further without what it lacks bends to make up for it. A block whose
 // springs yield becomes one of high damping, and no step with the effect leads back from there. So
-// effects that a trace ranks first are tried on the body fitted under the highest gain only, and on
-// the body fitted further. One linear step says little of laws of the springs, so these are also
-// tried by two steps of common factors from each of their starts. From there on all go down
-// together, the better part at a time (successive halving).
+// effects that a trace ranks first are tried on bodies of common factors that were fitted under the
+// highest gain only, and on the smooth body fitted further. One linear step says little of laws of
+// the springs, so these are also tried by two steps from each of their starts. From there on all go
+// down together as smooth bodies, the better part at a time (successive halving).
 #ifndef PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 
@@ -24,11 +24,13 @@ namespace physpring {
 
 // `stage`, here and below: the share of the work, for the journal.
 
-// The bodies that fit best with the effects that are known, the best first; smooth ones, but for
-// bodies that hardly move. Those that diverge are left out.
+// The bodies that fit best with the effects that are known, the best first. Those that diverge are
+// left out.
 struct FittedBodies {
-  std::vector<Descent> early;  // fitted under the highest gain only; none after an effect was found
-  std::vector<Descent> fitted;  // fitted down to the gain of the trace
+  // With common factors, under the highest gain only; none after an effect was found.
+  std::vector<Descent> early;
+  // Smooth ones, but for bodies that hardly move, down to the gain of the trace.
+  std::vector<Descent> fitted;
 };
 FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
                        const WorkShare& stage);

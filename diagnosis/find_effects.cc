@@ -101,7 +101,8 @@ std::size_t ChooseAmong(const Inquiry& inquiry, const std::vector<Verdict>& verd
   for (const Verdict& v : verdicts) {
     scored.push_back({v.descent.hypothesis.ParameterCount(), v.track.held, v.held});
   }
-  return ChooseSimplest(scored, BlockOf(inquiry.fitting), inquiry.options.seed);
+  return ChooseSimplest(scored, inquiry.noise_floor, BlockOf(inquiry.fitting),
+                        inquiry.options.seed);
 }
 
 // The model without a new effect, with those that are known; nothing if it diverges.

@@ -107,6 +107,7 @@ Descent Fitting::Smooth(const Descent& fit, SmoothBody::Numbers numbers) const {
   start.dashpot = start.stiffness * (start.dashpot.sum() / start.stiffness.sum());  // one loss time
   SmoothBody::Options options{kMostCommonRate};
   options.numbers = numbers;
+  options.class_loss_times = numbers == SmoothBody::Numbers::kAll;
   const SmoothBody body(start, *recordings_[0].recording, SpringNet(), options);
   Eigen::VectorXd from = fit.x.head(own);
   if (fit.hypothesis.material) {

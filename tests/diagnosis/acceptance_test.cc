@@ -87,9 +87,9 @@ TEST(IsWorthIt, ExplainsThreeFifthsOfTheSquaredErrorAboveTheNoise) {
   EXPECT_FALSE(IsWorthIt(Gain(1.72), 5, kThreshold));
 }
 
-// sqrt(1.1^2 - 0.3^2) = 1.058
+// 1.1^2 - 1.01^2 = 0.436^2, 1.04^2 - 1 = 0.286^2
 TEST(IsWorthIt, ExplainsAsMuchAsThreeTenthsOfTheNoiseWouldAdd) {
-  EXPECT_TRUE(IsWorthIt(Gain(0.045), 1.1, kThreshold));
+  EXPECT_TRUE(IsWorthIt(Gain(0.09), 1.1, kThreshold));
   EXPECT_FALSE(IsWorthIt(Gain(0.04), 1.04, kThreshold));
   EXPECT_FALSE(IsWorthIt(Gain(0.04), 0.9, kThreshold));  // no error above the noise
 }
@@ -125,15 +125,19 @@ Scored MakeFit(Eigen::Index parameters, double mean, std::uint64_t seed) {
 
 TEST(ChooseSimplest, TakesFewerParametersWhereErrorsAreAlike) {
   // better by 0.02; the means of 100 errors differ by 0.08 by chance
-  EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 1), MakeFit(2, 2.02, 2)}, 5, 0), 1U);
+  EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 1), MakeFit(2, 2.02, 2)}, 1, 5, 0), 1U);
 }
 
 TEST(ChooseSimplest, TakesTheBestWhereErrorsDiffer) {
-  EXPECT_EQ(ChooseSimplest({MakeFit(2, 4, 1), MakeFit(37, 2, 2)}, 5, 0), 1U);
-  EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 2), MakeFit(2, 4, 1)}, 5, 0), 0U);
+  EXPECT_EQ(ChooseSimplest({MakeFit(2, 4, 1), MakeFit(37, 2, 2)}, 1, 5, 0), 1U);
+  EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 2), MakeFit(2, 4, 1)}, 1, 5, 0), 0U);
 }
 
-TEST(ChooseSimplest, TakesTheOnlyOne) { EXPECT_EQ(ChooseSimplest({MakeFit(3, 1, 1)}, 5, 0), 0U); }
+TEST(ChooseSimplest, TakesFewerParametersWhereThatLeavesNoMoreThanNoise) {
+  EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 1), MakeFit(2, 4, 2)}, 3.9, 5, 0), 1U);
+}
+
+TEST(ChooseSimplest, TakesTheOnlyOne) { EXPECT_EQ(ChooseSimplest({MakeFit(3, 1, 1)}, 1, 5, 0), 0U); }
 
 }  // namespace
 }  // namespace physpring

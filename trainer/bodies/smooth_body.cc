@@ -24,7 +24,7 @@ ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& r
                                const BodyKind& kind, const SmoothBody::Options& body) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
-  options.class_dashpots = false;
+  options.class_dashpots = body.class_loss_times;
   const bool few = body.numbers == SmoothBody::Numbers::kFew;
   options.classes = {kClassJump, kEqualClasses, body.hands_apart, body.directions};
   options.modes = SpringModes(start, few ? kFewModes : kModes);

@@ -23,6 +23,7 @@ class SmoothBody {
     bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
     bool directions = false;   // so are springs of other directions
     Numbers numbers = Numbers::kAll;
+    bool class_loss_times = false;  // each class has a loss time of its own
   };
 
   // `start`: the system at x = 0, whose springs have one loss time.
