@@ -9,7 +9,6 @@
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/effect_search.h"
-#include "trainer/solvers/parallel.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {

@@ -137,7 +137,9 @@ TEST(ChooseSimplest, TakesFewerParametersWhereThatLeavesNoMoreThanNoise) {
   EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 1), MakeFit(2, 4, 2)}, 3.9, 5, 0), 1U);
 }
 
-TEST(ChooseSimplest, TakesTheOnlyOne) { EXPECT_EQ(ChooseSimplest({MakeFit(3, 1, 1)}, 1, 5, 0), 0U); }
+TEST(ChooseSimplest, TakesTheOnlyOne) {
+  EXPECT_EQ(ChooseSimplest({MakeFit(3, 1, 1)}, 1, 5, 0), 0U);
+}
 
 }  // namespace
 }  // namespace physpring
