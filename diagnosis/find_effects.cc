@@ -272,7 +272,7 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
   const auto declared = FitDeclared(fitting, noise_floor, known, share.Part(0, kDeclaredPart));
   if (!declared) return {};
   Standing standing = *declared;
-  if (trained) standing.accepted = Better(standing.accepted, *trained);
+  standing.accepted = Better(standing.accepted, trained);
   Findings findings;
   for (int round = 0; round < options.most_effects; ++round) {
     const WorkShare stage = ShareOf(share.Part(kDeclaredPart, 1), round, options.most_effects);
