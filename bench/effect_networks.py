@@ -60,6 +60,13 @@ class Wind(NoEffect):
         return -self.drag / len(x) * np.linalg.norm(u, axis=1, keepdims=True) * u
 
 
+def far_point(system, place):
+    """One of the points that are farther from the hands than most: the number of it."""
+    away = np.linalg.norm(system["points"][:, None] - system["controllers"], axis=2).min(axis=1)
+    far = np.flatnonzero(away > np.median(away))
+    return far[place % len(far)]
+
+
 class Payload(NoEffect):
     name = "mass_distribution"
 
@@ -67,9 +74,7 @@ class Payload(NoEffect):
         self.share, self.place = 0.2 * strength, random.integers(1 << 20)
 
     def start(self, system):
-        away = np.linalg.norm(system["points"][:, None] - system["controllers"], axis=2).min(axis=1)
-        far = np.flatnonzero(away > np.median(away))
-        place = far[self.place % len(far)]
+        place = far_point(system, self.place)
         added = self.share * system["mass"].sum()
         system["mass"] = system["mass"].copy()
         system["mass"][place] += added
@@ -99,9 +104,7 @@ class Tether(NoEffect):
         self.stiffness, self.place = 4 * strength, random.integers(1 << 20)
 
     def start(self, system):
-        away = np.linalg.norm(system["points"][:, None] - system["controllers"], axis=2).min(axis=1)
-        far = np.flatnonzero(away > np.median(away))
-        self.node = far[self.place % len(far)]
+        self.node = far_point(system, self.place)
         self.anchor = system["points"][self.node].copy()
         self.truth = {"stiffness_n_per_m": self.stiffness, "place_m": self.anchor.tolist()}
 
@@ -206,9 +209,8 @@ EFFECTS = [Wind, Payload, TiltedGravity, Tether, LateHands, Yield, Friction, Sti
            Relaxation]
 
 
-def strong_enough(kind, seed, simulate):
-    """The effect, and two motions with and without it, m by which it moves them; or None."""
-    clean = [simulate(motion, NoEffect()) for motion in (0, 1)]
+def strong_enough(kind, seed, clean, simulate):
+    """The effect, two motions with it, and the m by which it moves the clean ones; or None."""
     if kind is None:
         return None, clean, [0.0, 0.0]
 
@@ -238,7 +240,8 @@ def write_case(folder, case, body, kinds, random, amplitude):
             time, np.random.default_rng(seed), amplitude) for seed in seeds[motion]]
         return clean_networks.simulate(dict(system), body.fps, paths, effect)
 
-    found = (strong_enough(kind, random.integers(1 << 30), simulate) for kind in kinds)
+    clean = [simulate(motion, NoEffect()) for motion in (0, 1)]
+    found = (strong_enough(kind, random.integers(1 << 30), clean, simulate) for kind in kinds)
     effect, motions, by = next(one for one in found if one is not None)
     for name, (points, controllers) in zip(("train", "eval"), motions):
         clean_networks.write_recording(folder / f"{case}_{name}.npz", body, points, controllers,

@@ -51,7 +51,6 @@ int DiagnosisRate(const SpringMassSystem& system, double fps) {
 }
 
 EffectProblem::Options::Options() {
-  rollout.growth_limit = std::numeric_limits<double>::infinity();
   most_substeps = std::numeric_limits<int>::max();
   most_rate = 10000;
   keep_substeps = true;

@@ -21,8 +21,8 @@ namespace {
 constexpr EffectModel::OwnRange kTrusted{0.05, 0.25};
 constexpr double kMostCommonRate = 5000;  // sub-steps a second at most
 constexpr int kUpdates = 4;               // of the Jacobian of a smooth body, in a step
-constexpr double kExactTolerance =
-    5e-4;  // an exact fit ends where a step gains less than this part
+// An exact fit ends where a step gains less than this part.
+constexpr double kExactTolerance = 5e-4;
 // A trusted body may take so many times the sub-steps a second that it came with.
 constexpr double kTrustedRoom = 1.25;
 
