@@ -11,8 +11,9 @@ namespace {
 
 // An error below this, times the noise floor, asks for no more effects than were found.
 constexpr double kExplainedByEffects = 2;
+constexpr double kNearNoise = 3;        // noise floors
 constexpr Eigen::Index kFreeForm = 20;  // what has more parameters is a free form
-constexpr double kStrong = 0.7, kHopeless = 4;
+constexpr double kStrong = 0.7, kHopeless = 4, kFarBehind = 16;
 constexpr double kLeastScore = 0.05;  // the least score of a trace, as a part of the best one
 constexpr double kNear = 1.25;  // the largest error that is near, times that of the chosen fit
 constexpr int kSimplestDraws = 1000;
@@ -20,6 +21,8 @@ constexpr int kSimplestDraws = 1000;
 }  // namespace
 
 bool IsExplained(double error, double noise_floor) { return error < kExplained * noise_floor; }
+
+bool IsNearNoise(double error, double noise_floor) { return error < kNearNoise * noise_floor; }
 
 bool NothingIsLeft(int accepted, double error, double noise_floor) {
   return accepted == 0 ? IsExplained(error, noise_floor)
@@ -39,6 +42,10 @@ bool IsAlike(const BootstrapResult& worse) { return worse.mean <= worse.error; }
 bool IsStrongLaw(double misfit, double misfit_alone) { return misfit < kStrong * misfit_alone; }
 
 bool IsHopeless(double misfit, double least_misfit) { return misfit > kHopeless * least_misfit; }
+
+bool IsFarBehind(double predicted, double least_misfit) {
+  return predicted > kFarBehind * least_misfit;
+}
 
 bool IsWorthRefit(double score, double best_score) { return score > kLeastScore * best_score; }
 

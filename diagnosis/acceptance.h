@@ -20,6 +20,9 @@ inline constexpr double kExplained = 1.05;
 
 bool IsExplained(double error, double noise_floor);
 
+// Whether an error is so near to noise that a more careful fit of the body may get there.
+bool IsNearNoise(double error, double noise_floor);
+
 // Whether there is nothing to look for, by the error with those effects that were accepted.
 bool NothingIsLeft(int accepted, double error, double noise_floor);
 
@@ -41,6 +44,8 @@ bool IsAlike(const BootstrapResult& worse);
 bool IsStrongLaw(double misfit, double misfit_alone);
 // Whether a fit under an observer is too bad to go on beside the one with the least misfit.
 bool IsHopeless(double misfit, double least_misfit);
+// Whether what a trace predicts is so bad beside the least misfit that no refit is worth it.
+bool IsFarBehind(double predicted, double least_misfit);
 // Whether a trace's score is worth a refit, beside the best one.
 bool IsWorthRefit(double score, double best_score);
 

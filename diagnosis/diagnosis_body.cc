@@ -10,6 +10,8 @@
 
 #include "trainer/bodies/bending_chain.h"
 #include "trainer/bodies/candidates.h"
+#include "trainer/bodies/smooth_body.h"
+#include "trainer/bodies/spring_net.h"
 #include "twin/topology.h"
 
 namespace physpring {
@@ -34,6 +36,13 @@ SpringMassSystem MakeAlike(const SpringMassSystem& system) {
   return alike;
 }
 
+// The system as it was trained, but smooth; `alike` has its springs.
+SpringMassSystem SmoothlyAs(const SpringMassSystem& trained, const SpringMassSystem& alike,
+                            const Recording& recording) {
+  const double any_rate = 1e9;
+  return SmoothBody(alike, recording, SpringNet(), {any_rate}).NearestTo(trained);
+}
+
 // The recording with the stress-free shape that the twin knows.
 Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording) {
   Recording shaped = recording;
@@ -47,12 +56,16 @@ Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording
 
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on) {
   const bool chain = IsBendingChain(twin.levels[0].system);
-  DiagnosisBody own{twin.levels[0].system, twin.controller_velocity, chain || !trained_on,
-                    "as trained"};
+  using Kind = DiagnosisBody::Kind;
+  DiagnosisBody own{twin.levels[0].system, twin.controller_velocity,
+                    chain || !trained_on ? Kind::kTrusted : Kind::kOpen, "as trained"};
   if (chain) return {own};
   own.base.effects.clear();
   if (!trained_on) return {own};
+  DiagnosisBody trained = own;
+  trained.kind = Kind::kTrained;
   own.base = MakeAlike(own.base);
+  trained.base = SmoothlyAs(trained.base, own.base, recording);
   std::vector<DiagnosisBody> bodies = {own};
   TrainOptions options;
   if (twin.order.size() == 0) {
@@ -69,9 +82,10 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
              body.base.springs == system.springs;
     });
     if (!known) {
-      bodies.push_back({system, candidate.controller_velocity, false, candidate.Label()});
+      bodies.push_back({system, candidate.controller_velocity, Kind::kOpen, candidate.Label()});
     }
   }
+  bodies.push_back(trained);
   return bodies;
 }
 

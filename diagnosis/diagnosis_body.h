@@ -3,7 +3,8 @@
 //   A twin that was trained on one of the recordings has bent its choice of neighbours, its common
 //   factors and its single springs to what its model lacks. Whatever it chose is open again: every
 //   neighbour count with either treatment of controllers is a body of equal springs, and which one
-//   is right is found together with the effect.
+//   is right is found together with the effect. One more begins where the training ended, as a
+//   smooth body (trainer/bodies/smooth_body.h): training looks for the right valley with more care.
 //   A twin that was trained on other recordings knows its object: it is the only body, and its own
 //   parameters hardly move.
 //   So does a chain that bends (trainer/bodies/bending_chain.h), whatever it was trained on: a few
@@ -22,7 +23,11 @@ namespace physpring {
 struct DiagnosisBody {
   SpringMassSystem base;  // without effects, except a chain's own
   bool controller_velocity = true;
-  bool trusted = false;  // its own parameters hardly move
+  enum class Kind {
+    kOpen,     // begins as stiff as fits best
+    kTrained,  // begins as it was trained, as a smooth body
+    kTrusted   // stays about as it was trained: its own parameters hardly move
+  } kind = Kind::kOpen;
   std::string label;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <span>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTracedEffects = 6;  // no more than these are tried on fitted bodies
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-constexpr std::size_t kMostStrong = 4;
+constexpr std::size_t kMostLaws = 4, kMostStrong = 2;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
 // How many steps all fits make, and how many fits go on after that: in all, and with one effect.
@@ -26,17 +27,22 @@ struct Cut {
   Fitting::Care care = Fitting::Care::kRough;
 };
 // In this order: bodies under the highest gain; the best ones as smooth bodies down to the gain of
-// the trace, and down to none; laws, strong ones on all bodies, and all effects from the start on;
-// all effects with smooth bodies; one fit once more.
+// the trace; the trained one down to that; the best one down to none; laws, strong ones on all
+// bodies, and all effects from the start on; all effects with smooth bodies; one fit once more.
 constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 2, 2}}};
 constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 4, 1, 1}, {0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
+constexpr std::array<Cut, 2> kTrainedCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
-constexpr std::array<Cut, 2> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 6, 4, 3}}};
+constexpr std::array<Cut, 2> kLawCuts = {{{0.5, 1, 12, 5}, {0.5, 1, 12, 4}}};
+constexpr std::array<Cut, 3> kStrongCuts = {{{0.5, 2, 6, 6}, {0.5, 2, 5, 4}, {0.5, 4, 4, 3}}};
 constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.2, 2, 8, 2}, {0.1, 3, 5, 1}, {0, 15, 5, 1}}};
-constexpr std::array<Cut, 3> kAgainCuts = {
-    {{0.2, 3, 1, 1}, {0.1, 3, 1, 1}, {0, 40, 1, 1, Fitting::Care::kExact}}};
+constexpr std::array<Cut, 4> kAgainCuts = {
+    {{0.2, 3, 1, 1}, {0.1, 3, 1, 1}, {0, 12, 1, 1}, {0, 12, 1, 1, Fitting::Care::kExact}}};
+
+using Kind = DiagnosisBody::Kind;
+
+Kind KindOf(const Fitting& fitting, std::size_t body) { return fitting.bodies()[body].kind; }
 
 bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
 
@@ -51,8 +57,9 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<Descent>* fit
   std::size_t others = 0;
   std::erase_if(*fits, [&](const Descent& fit) {
     const bool apart = competing && HasFreeForm(fit);
+    if (IsHopeless(fit.misfit, least)) return true;
     if (kept[fit.hypothesis.NewEffect()]++ >= (apart ? 1 : of_an_effect)) return true;
-    return !apart && (others++ >= count || IsHopeless(fit.misfit, least));
+    return !apart && others++ >= count;
   });
 }
 
@@ -92,7 +99,23 @@ std::vector<Verdict> JudgeAndSort(const Fitting& fitting, const std::vector<Desc
 std::vector<Descent> SmoothAll(const Fitting& fitting, std::vector<Descent> fits,
                                SmoothBody::Numbers numbers = SmoothBody::Numbers::kFew) {
   for (Descent& fit : fits) {
-    if (!fitting.bodies()[fit.hypothesis.body].trusted) fit = fitting.Smooth(fit, numbers);
+    if (KindOf(fitting, fit.hypothesis.body) != Kind::kTrusted) fit = fitting.Smooth(fit, numbers);
+  }
+  return fits;
+}
+
+std::optional<Descent> First(const std::vector<Descent>& fits) {
+  return fits.empty() ? std::nullopt : std::optional<Descent>(fits.front());
+}
+
+// The descents of all bodies whose kind passes, as they begin; those that diverge are left out.
+std::vector<Descent> BeginAll(const Fitting& fitting, const std::vector<EffectValues>& known,
+                              bool (*passes)(Kind)) {
+  std::vector<Descent> fits;
+  for (std::size_t body = 0; body < fitting.bodies().size(); ++body) {
+    if (!passes(KindOf(fitting, body))) continue;
+    Descent fit = fitting.Begin(body, known);
+    if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
   return fits;
 }
@@ -137,11 +160,13 @@ std::vector<Descent> FitLaws(const Fitting& fitting, const Descent& body,
     strong.resize(std::min(strong.size(), kMostStrong));
     fits.clear();
     for (const EffectValues& law : strong) {
-      for (std::size_t n = 0; n < fitting.bodies().size(); ++n) add(n, law);
+      for (std::size_t n = 0; n < fitting.bodies().size(); ++n) {
+        if (KindOf(fitting, n) != Kind::kTrained) add(n, law);
+      }
     }
     Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
   }
-  Keep(kMostStrong, strong.empty() ? 1 : 2, &fits);
+  Keep(kMostLaws, strong.empty() ? 1 : 2, &fits);
   return fits;
 }
 
@@ -156,10 +181,16 @@ std::vector<EffectTrace> BestTraces(std::vector<EffectTrace> traces) {
   return traces;
 }
 
-// The fit with each of the best effects of a trace.
+// Adds the fit with each of the best effects of a trace, but for those that would be hopeless
+// beside the best of `fits` even if they took all that the trace says.
 void AddTraced(const Descent& fit, const std::vector<EffectTrace>& traces,
                std::vector<Descent>* fits) {
-  for (const EffectTrace& trace : BestTraces(traces)) fits->push_back(With(fit, trace));
+  double least = std::numeric_limits<double>::infinity();
+  for (const Descent& other : *fits) least = std::min(least, other.misfit);
+  for (const EffectTrace& trace : BestTraces(traces)) {
+    if (IsFarBehind((1 - trace.score) * fit.misfit, least)) continue;
+    fits->push_back(With(fit, trace));
+  }
 }
 
 // Fits with effects on bodies that were fitted under the highest gain only. They become smooth once
@@ -178,25 +209,35 @@ std::vector<Descent> FitFromStart(const Fitting& fitting, const std::vector<Desc
 
 }  // namespace
 
-FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
-                       const WorkShare& stage) {
-  FittedBodies bodies;
-  std::vector<Descent>& fits = bodies.fitted;
-  for (std::size_t body = 0; body < fitting.bodies().size(); ++body) {
-    Descent fit = fitting.Begin(body, known);
-    if (fit.x.size() > 0) fits.push_back(std::move(fit));
-  }
-  Halve(fitting, kEarlyBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &fits);
-  bodies.early = fits;
-  fits = SmoothAll(fitting, fits);
-  Halve(fitting, kBodyCuts, stage.Part(0.3, 1), kWithoutEffect, &fits);
-  return bodies;
+std::optional<Descent> FitTrained(const Fitting& fitting, const std::vector<EffectValues>& known,
+                                  const WorkShare& stage) {
+  std::vector<Descent> fits = SmoothAll(
+      fitting, BeginAll(fitting, known, [](Kind kind) { return kind == Kind::kTrained; }));
+  Halve(fitting, kTrainedCuts, stage, kWithoutEffect, &fits);
+  return First(fits);
 }
 
-std::vector<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
-                               std::vector<Descent> bodies) {
-  Halve(fitting, kFreeCuts, stage, kWithoutEffect, &bodies);
-  return JudgeAndSort(fitting, bodies);
+std::optional<FittedBodies> FitBodies(const Fitting& fitting,
+                                      const std::vector<EffectValues>& known,
+                                      const std::optional<Descent>& trained,
+                                      const WorkShare& stage) {
+  std::vector<Descent> early =
+      BeginAll(fitting, known, [](Kind kind) { return kind != Kind::kTrained; });
+  Halve(fitting, kEarlyBodyCuts, stage.Part(0, 0.3), kWithoutEffect, &early);
+  std::vector<Descent> fits = SmoothAll(fitting, early);
+  Halve(fitting, kBodyCuts, stage.Part(0.3, 1), kWithoutEffect, &fits);
+  if (trained) fits.push_back(*trained);
+  Keep(1, 1, &fits);
+  if (fits.empty()) return {};
+  return FittedBodies{early, fits.front()};
+}
+
+std::optional<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
+                                 const Descent& body) {
+  std::vector<Descent> fits = {body};
+  Halve(fitting, kFreeCuts, stage, kWithoutEffect, &fits);
+  if (fits.empty()) return {};
+  return fitting.Judge(fits.front());
 }
 
 EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
@@ -204,7 +245,7 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
                                  const WorkShare& stage) {
   EffectSearchResult result;
   std::vector<Descent> fits = FitFromStart(fitting, bodies.early, effects, stage.Part(0, 0.2));
-  const Descent& fitted = bodies.fitted.front();
+  const Descent& fitted = bodies.fitted;
   result.traces = TraceEffects(fitting, fitted, effects, kTraceGain, stage.Part(0.2, 0.3));
   AddTraced(fitted, result.traces, &fits);
   Halve(fitting, kCuts, stage.Part(0.3, 1), "", &fits);
@@ -218,10 +259,15 @@ EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bod
 }
 
 std::optional<Verdict> Refine(const Fitting& fitting, const WorkShare& stage,
-                              const Descent& descent) {
+                              const Descent& descent, double least_misfit) {
   std::vector<Descent> again = SmoothAll(fitting, {descent}, SmoothBody::Numbers::kAll);
-  Halve(fitting, kAgainCuts, stage, " once more", &again);
-  if (again.empty()) return {};
+  double done = 0;
+  for (const Cut& cut : kAgainCuts) {
+    const double part = done + 1.0 / kAgainCuts.size();
+    Halve(fitting, {&cut, 1}, stage.Part(done, part), " once more", &again);
+    done = part;
+    if (again.empty() || IsHopeless(again[0].misfit, least_misfit)) return {};
+  }
   return fitting.Judge(again[0]);
 }
 

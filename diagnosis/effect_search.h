@@ -15,6 +15,7 @@
 #ifndef PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 #define PHYSPRING_DIAGNOSIS_EFFECT_SEARCH_H_
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -24,35 +25,45 @@ namespace physpring {
 
 // `stage`, here and below: the share of the work, for the journal.
 
-// The bodies that fit best with the effects that are known, the best first. Those that diverge are
-// left out.
+// Fits without the effect, to which effects are added.
 struct FittedBodies {
-  // With common factors, under the highest gain only; none after an effect was found.
+  // With common factors, under the highest gain only, the best first; none after an effect was
+  // found.
   std::vector<Descent> early;
-  // Smooth ones, but for bodies that hardly move, down to the gain of the trace.
-  std::vector<Descent> fitted;
+  // The best one down to the gain of the trace: a smooth one, unless it hardly moves.
+  Descent fitted;
 };
-FittedBodies FitBodies(const Fitting& fitting, const std::vector<EffectValues>& known,
-                       const WorkShare& stage);
 
-// The bodies, fitted without an observer and judged, least held-out error first.
-std::vector<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
-                               std::vector<Descent> bodies);
+// The body as it was trained, down to the gain of the trace; nothing if there is no such body or it
+// diverges.
+std::optional<Descent> FitTrained(const Fitting& fitting, const std::vector<EffectValues>& known,
+                                  const WorkShare& stage);
+
+// The bodies that fit best with the effects that are known; the trained one is among those that
+// `fitted` is chosen from. Nothing if all diverge.
+std::optional<FittedBodies> FitBodies(const Fitting& fitting,
+                                      const std::vector<EffectValues>& known,
+                                      const std::optional<Descent>& trained,
+                                      const WorkShare& stage);
+
+// The body, fitted without an observer and judged; nothing if it diverges.
+std::optional<Verdict> FitFreely(const Fitting& fitting, const WorkShare& stage,
+                                 const Descent& body);
 
 struct EffectSearchResult {
   std::vector<EffectTrace> traces;  // one for each effect, on the best body
   std::vector<Verdict> verdicts;    // those on the best effects, least held-out error first
 };
 
-// `bodies` are fits without the effect. At least one of them is in `fitted`.
 EffectSearchResult SearchEffects(const Fitting& fitting, const FittedBodies& bodies,
                                  const std::vector<const Effect*>& effects, const WorkShare& stage);
 
 // The descent, fitted once more from where it is, under an observer and then without one: a smooth
 // body with all its numbers. A body that hardly moves may come nearer to its least in this way.
-// Nothing if the motion diverges.
+// Nothing if the motion diverges, or if the fit is hopeless beside one of that misfit.
 std::optional<Verdict> Refine(const Fitting& fitting, const WorkShare& stage,
-                              const Descent& descent);
+                              const Descent& descent,
+                              double least_misfit = std::numeric_limits<double>::infinity());
 
 }  // namespace physpring
 

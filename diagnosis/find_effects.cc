@@ -9,6 +9,7 @@
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/effect_search.h"
+#include "diagnosis/noise_floor.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {
@@ -104,17 +105,26 @@ std::size_t ChooseAmong(const Inquiry& inquiry, const std::vector<Verdict>& verd
                         inquiry.options.seed);
 }
 
-// The model without a new effect, with those that are known; nothing if it diverges.
+// The model without a new effect, with those that are known; nothing if it diverges. Where the body
+// as trained leaves no more than noise, others are not fitted.
 std::optional<Standing> FitDeclared(const Fitting& fitting, double noise_floor,
                                     const std::vector<EffectValues>& known,
                                     const WorkShare& share) {
-  FittedBodies bodies = FitBodies(fitting, known, share.Part(0, 0.5));
-  const std::vector<Verdict> free = FitFreely(fitting, share.Part(0.5, 0.7), bodies.fitted);
-  if (free.empty()) return {};
-  const bool explained = IsExplained(free[0].track.held, noise_floor);
-  Standing standing{std::move(bodies), free[0], {}};
-  if (!explained) {
-    standing.accepted = Better(free[0], Refine(fitting, share.Part(0.7, 1), free[0].descent));
+  const std::optional<Descent> trained = FitTrained(fitting, known, share.Part(0, 0.1));
+  if (trained && IsNearNoise(TrackNoiseFloor(std::sqrt(trained->misfit)), noise_floor)) {
+    const auto free = FitFreely(fitting, share.Part(0.1, 0.2), *trained);
+    if (free && IsExplained(free->track.held, noise_floor)) {
+      return Standing{{{}, *trained}, *free, {}};
+    }
+  }
+  const auto bodies = FitBodies(fitting, known, trained, share.Part(0.2, 0.5));
+  if (!bodies) return {};
+  const auto free = FitFreely(fitting, share.Part(0.5, 0.7), bodies->fitted);
+  if (!free) return {};
+  Standing standing{*bodies, *free, {}};
+  const double error = free->track.held;
+  if (!IsExplained(error, noise_floor) && IsNearNoise(error, noise_floor)) {
+    standing.accepted = Better(*free, Refine(fitting, share.Part(0.7, 1), free->descent));
   }
   return standing;
 }
@@ -133,7 +143,7 @@ Attempt Search(const Inquiry& inquiry, const Standing& standing, const WorkShare
   if (!standing.rival) return SearchBeside(inquiry, standing, stage);
   Attempt first = SearchBeside(inquiry, standing, stage.Part(0, 0.5));
   const Verdict& rival = *standing.rival;
-  Attempt other = SearchBeside(inquiry, {{{}, {rival.descent}}, rival, {}}, stage.Part(0.5, 1));
+  Attempt other = SearchBeside(inquiry, {{{}, rival.descent}, rival, {}}, stage.Part(0.5, 1));
   other.rival_won = true;
   if (!other.found()) return first;
   const Verdict& best = other.chosen();
@@ -154,6 +164,17 @@ std::string WhyNotWorthIt(const Inquiry& inquiry, const Attempt& attempt) {
                        inquiry.ThresholdFor(attempt.verdicts.size()));
 }
 
+// What was chosen, on the body of the best fit without it; empty if that is a training.
+Descent BesideAccepted(const Attempt& attempt) {
+  Descent beside = attempt.beside.accepted.descent;
+  const Eigen::Index size = beside.x.size();
+  if (size == 0) return beside;
+  const EffectValues& found = attempt.chosen().system.effects.back();
+  beside.hypothesis.effects.push_back(found);
+  beside.x.conservativeResizeLike(Eigen::VectorXd::Zero(size + found.values.size()));
+  return beside;
+}
+
 // Searches for one more effect, unless nothing is left to explain. What is chosen is fitted once
 // more where it leaves more than noise. Then it is left out again, and the body fitted from where
 // it is: what another valley gains is no merit of the effect.
@@ -167,13 +188,16 @@ Attempt LookForOneMore(const Inquiry& inquiry, const Standing& standing, int rou
   Attempt attempt = Search(inquiry, standing, stage.Part(0, kFound));
   if (!attempt.found()) return attempt;
   Verdict& chosen = attempt.verdicts[attempt.best];
-  if (!IsExplained(chosen.track.held, inquiry.noise_floor)) {
-    chosen = Better(chosen, Refine(fitting, stage.Part(kFound, kChosen), chosen.descent));
+  for (const Descent& descent : {chosen.descent, BesideAccepted(attempt)}) {
+    if (descent.x.size() == 0 || IsExplained(chosen.track.held, inquiry.noise_floor)) continue;
+    const auto refined =
+        Refine(fitting, stage.Part(kFound, kChosen), descent, chosen.descent.misfit);
+    if (refined && !IsSurelyBetter(inquiry.Gain(*refined, chosen))) chosen = *refined;
   }
   if (!WhyNotWorthIt(inquiry, attempt).empty()) return attempt;
   Verdict& without = attempt.beside.accepted;
-  without =
-      Better(without, Refine(fitting, stage.Part(kChosen, 1), chosen.descent.WithoutNewEffect()));
+  without = Better(without, Refine(fitting, stage.Part(kChosen, 1),
+                                   chosen.descent.WithoutNewEffect(), chosen.descent.misfit));
   return attempt;
 }
 
@@ -286,7 +310,7 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
     if (attempt.found()) findings.refusal = Refusal(inquiry, attempt);
     if (!attempt.found() || !findings.refusal.empty()) break;
     const Verdict& chosen = attempt.chosen();
-    standing = {{{}, {chosen.descent}}, chosen, RivalOf(inquiry, attempt)};
+    standing = {{{}, chosen.descent}, chosen, RivalOf(inquiry, attempt)};
   }
   findings.accepted = standing.accepted;
   return findings;

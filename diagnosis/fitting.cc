@@ -73,7 +73,7 @@ double Fitting::difference() const { return FactorDifference(*recordings_[0].rec
 
 SpringMassSystem Fitting::Base(std::size_t body, double start_substeps) const {
   SpringMassSystem base = bodies_[body].base;
-  if (!bodies_[body].trusted) {
+  if (bodies_[body].kind == DiagnosisBody::Kind::kOpen) {
     ScaleToSubsteps(1 / recordings_[0].recording->fps, start_substeps, kStepSafety, &base);
   }
   return base;
@@ -91,7 +91,7 @@ Descent Fitting::Begin(std::size_t body, const std::vector<EffectValues>& effect
     if (!r || r->squaredNorm() >= best.misfit) continue;
     descent.misfit = r->squaredNorm();
     best = std::move(descent);
-    if (bodies_[body].trusted) break;
+    if (bodies_[body].kind != DiagnosisBody::Kind::kOpen) break;
   }
   return best;
 }
@@ -125,7 +125,8 @@ EffectModel Fitting::Model(const Hypothesis& hypothesis) const {
   const DiagnosisBody& body = bodies_[hypothesis.body];
   return EffectModel(
       CommonFactors(Base(hypothesis.body, hypothesis.start_substeps), *recordings_[0].recording),
-      body.trusted ? kTrusted : EffectModel::OwnRange{}, hypothesis.effects);
+      body.kind == DiagnosisBody::Kind::kTrusted ? kTrusted : EffectModel::OwnRange{},
+      hypothesis.effects);
 }
 
 EffectProblem Fitting::Problem(const Hypothesis& hypothesis, double gain, Care care) const {
@@ -137,7 +138,7 @@ EffectProblem Fitting::MakeProblem(const EffectModel& model, const DiagnosisBody
   EffectProblem::Options options;
   options.least_rate = kLeastDiagnosisRate;
   options.most_rate = kMostCommonRate;
-  if (body.trusted) {
+  if (body.kind == DiagnosisBody::Kind::kTrusted) {
     const double own = DiagnosisRate(body.base, recordings_[0].recording->fps);
     options.most_rate = std::max(options.most_rate, kTrustedRoom * own);
   }

@@ -15,15 +15,20 @@ std::optional<Verdict> FitAllFrames(const Fitting& fitting, const WorkShare& sha
                                     const Verdict& chosen) {
   std::vector<SplitRecording> all;
   for (const SplitRecording& split : fitting.recordings()) all.push_back(FitHeldOut(split));
+  const bool smooth = chosen.descent.hypothesis.material.has_value();
   // effects of the body itself (only a body without others has any) stay as they are, before those
   // that were added
   const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   const std::vector<EffectValues> added(
       chosen.system.effects.begin() + static_cast<long>(own.size()), chosen.system.effects.end());
-  DiagnosisBody body{chosen.system, chosen.controller_velocity, true, "as chosen"};
+  DiagnosisBody body{chosen.system, chosen.controller_velocity, DiagnosisBody::Kind::kTrusted,
+                     "as chosen"};
   body.base.effects = own;
-  const Fitting fitting_all({body}, all, fitting.threads(), &fitting.journal());
-  std::vector<Descent> descents = {fitting_all.Begin(0, added)};
+  const Fitting fitting_all(smooth ? fitting.bodies() : std::vector<DiagnosisBody>{body}, all,
+                            fitting.threads(), &fitting.journal());
+  std::vector<Descent> descents = {
+      smooth ? fitting_all.Smooth(chosen.descent, SmoothBody::Numbers::kAll)
+             : fitting_all.Begin(0, added)};
   if (descents[0].x.size() == 0) return {};
   fitting.journal().Stage(share, kSteps, "fitting to all frames");
   double before = std::numeric_limits<double>::infinity();

@@ -28,7 +28,7 @@ LevelStep<Real>::LevelStep(const SpringMassSystem& system, const Environment& en
 
 template <class Real>
 void LevelStep<Real>::SetParameters(const SpringMassSystem& system) {
-  effects_ = std::make_shared<const EffectStep<Real>>(system, gravity_, springs_.size());
+  effects_ = std::make_shared<const EffectStep<Real>>(system, gravity_, springs_.View());
   springs_.SetParameters(effects_->changed().system);
   contact_.SetParameters(effects_->changed().system);
 }

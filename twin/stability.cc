@@ -70,10 +70,22 @@ struct Estimate {
   double eigenvalue, residual;
 };
 
+// The largest eigenvalue of a symmetric tridiagonal matrix, and the residual of its eigenvector in
+// what the matrix is a projection of. The last entry of `beside` couples to the rest of that.
+Estimate LargestOf(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside) {
+  const Eigen::Index size = diagonal.size();
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> projection;
+  projection.computeFromTridiagonal(diagonal, beside.head(size - 1), Eigen::EigenvaluesOnly);
+  const double largest = projection.eigenvalues()[size - 1];
+  return {largest, beside[size - 1] * LastEntry(diagonal, beside, largest)};
+}
+
 // Lanczos' method from the vector q: the largest eigenvalue of the projection of A onto a Krylov
-// space, and its residual.
+// space, and its residual. It ends where the residual is small.
 Estimate Lanczos(const ScaledLaplacian& A, Eigen::VectorXd q) {
-  const Eigen::Index steps = std::min<Eigen::Index>(q.size(), 80);
+  constexpr Eigen::Index kMostSteps = 80, kLook = 16;  // looks at the residual after so many steps
+  constexpr double kSmall = 1e-5;  // of the eigenvalue, whose error is its square
+  const Eigen::Index steps = std::min(q.size(), kMostSteps);
   Eigen::VectorXd previous = Eigen::VectorXd::Zero(q.size());
   q.normalize();
   Eigen::VectorXd diagonal(steps), beside(steps);  // the projection's, on and beside its diagonal
@@ -86,15 +98,14 @@ Estimate Lanczos(const ScaledLaplacian& A, Eigen::VectorXd q) {
     beside[size] = next.norm();
     ++size;
     // no residual: the space holds the eigenvectors
-    if (size == steps || beside[size - 1] <= 1e-12 * diagonal.head(size).maxCoeff()) break;
+    const bool end = size == steps || beside[size - 1] <= 1e-12 * diagonal.head(size).maxCoeff();
+    if (end || size % kLook == 0) {
+      const Estimate found = LargestOf(diagonal.head(size), beside.head(size));
+      if (end || found.residual < kSmall * found.eigenvalue) return found;
+    }
     previous = q;
     q = next / beside[size - 1];
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> projection;
-  projection.computeFromTridiagonal(diagonal.head(size), beside.head(size - 1),
-                                    Eigen::EigenvaluesOnly);
-  const double largest = projection.eigenvalues()[size - 1];
-  return {largest, beside[size - 1] * LastEntry(diagonal.head(size), beside, largest)};
 }
 
 // Upper estimate of the largest eigenvalue, from two start vectors, the same each time and without
@@ -111,12 +122,24 @@ double LargestEigenvalue(const SpringMassSystem& system, const Eigen::VectorXd& 
   return larger.eigenvalue + larger.residual;
 }
 
+// Whether all dashpots are as strong as stiffnesses times one time.
+bool HasOneLossTime(const SpringMassSystem& system) {
+  const double stiffness = system.stiffness.sum();
+  if (!(stiffness > 0)) return false;
+  const double loss_time = system.dashpot.sum() / stiffness;
+  return ((system.dashpot - loss_time * system.stiffness).array().abs() <=
+          1e-9 * loss_time * system.stiffness.array())
+      .all();
+}
+
 }  // namespace
 
 StabilityBound ComputeStabilityBound(const SpringMassSystem& system) {
   if (!system.effects.empty()) return ComputeStabilityBound(BoundingSystem(system));
   const double omega_squared = LargestEigenvalue(system, system.stiffness);
-  const double gamma = LargestEigenvalue(system, system.dashpot);
+  const double gamma = HasOneLossTime(system)
+                           ? omega_squared * system.dashpot.sum() / system.stiffness.sum()
+                           : LargestEigenvalue(system, system.dashpot);
   // h^2 omega^2 + 2 h gamma = 4, in a form that does not cancel
   const double root = gamma + std::sqrt(gamma * gamma + 4 * omega_squared);
   return {std::sqrt(omega_squared), gamma,

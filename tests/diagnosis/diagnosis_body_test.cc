@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "tests/support/swung_rope.h"
 #include "trainer/bodies/bending_chain.h"
+#include "trainer/bodies/start_system.h"
 
 namespace physpring {
 namespace {
@@ -85,9 +87,28 @@ TEST(BodiesOf, AChainIsTheOnlyBodyAndKeepsItsBending) {
   const Twin twin = BendingChain();
   const std::vector<DiagnosisBody> bodies = BodiesOf(twin, {}, true);
   ASSERT_EQ(bodies.size(), 1U);
-  EXPECT_TRUE(bodies[0].trusted);
+  EXPECT_EQ(bodies[0].kind, DiagnosisBody::Kind::kTrusted);
   ASSERT_EQ(bodies[0].base.effects.size(), 1U);
   EXPECT_EQ(bodies[0].base.effects[0].name, "bending");
+}
+
+TEST(BodiesOf, ATwinThatIsOpenAgainIsAlsoTriedAsItWasTrained) {
+  const Recording recording = SwungRope(12, 10);
+  Twin twin;
+  SpringMassSystem system = MakeStartSystem(recording, {});
+  system.stiffness *= 20;
+  system.dashpot *= 3;
+  twin.levels.push_back({system, {}, 1000});
+  const std::vector<DiagnosisBody> bodies = BodiesOf(twin, recording, true);
+  ASSERT_GT(bodies.size(), 2U);
+  EXPECT_EQ(bodies[0].kind, DiagnosisBody::Kind::kOpen);
+  EXPECT_EQ(bodies.back().kind, DiagnosisBody::Kind::kTrained);
+  const SpringMassSystem& trained = bodies.back().base;
+  EXPECT_EQ(trained.springs, system.springs);
+  EXPECT_TRUE(trained.stiffness.isApprox(system.stiffness, 0.05));
+  EXPECT_NEAR(trained.dashpot.sum() / trained.stiffness.sum(),
+              system.dashpot.sum() / system.stiffness.sum(), 1e-9);
+  EXPECT_EQ(BodiesOf(twin, recording, false).size(), 1U);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class NothingToFind : public testing::Test {
   NothingToFind() : recording_(SwungRope(6, kFrames)) {
     recording_.train_frames = kFrames;
     body_.base = MakeStartSystem(recording_, {});
-    body_.trusted = true;
+    body_.kind = DiagnosisBody::Kind::kTrusted;
     SpringMassSystem other = body_.base;
     other.stiffness *= 0.3;
     MoveAs(other, true, &recording_);

@@ -37,7 +37,8 @@ Recording TiltedRope(double tilt, double tilt_where_held) {
 // The last fit of a rope with these effects, the last of which is not the body's own.
 std::optional<Verdict> LastFit(const Recording& recording, const std::vector<EffectValues>& effects,
                                bool trusted) {
-  DiagnosisBody body{MakeStartSystem(recording, {}), true, trusted, "rope"};
+  DiagnosisBody body{MakeStartSystem(recording, {}), true,
+                     trusted ? DiagnosisBody::Kind::kTrusted : DiagnosisBody::Kind::kOpen, "rope"};
   Verdict chosen;
   chosen.system = body.base;
   chosen.system.effects = effects;

@@ -70,6 +70,28 @@ SpringMassSystem SmoothBody::Apply(const Eigen::VectorXd& x) const {
   return system;
 }
 
+SpringMassSystem SmoothBody::NearestTo(const SpringMassSystem& system) const {
+  constexpr double kDeviation = 0.3;  // of a logarithm, where a spring is of the mean stiffness
+  constexpr double kSoftest = 1e-3;   // of the mean: softer springs count as this soft
+  const double mean = system.stiffness.mean();
+  const Eigen::ArrayXd stiffness = system.stiffness.array().max(kSoftest * mean);
+  const Eigen::ArrayXd weight = stiffness / mean / (kDeviation * kDeviation);
+  const Eigen::ArrayXd base = factors_.base().stiffness.array();
+  Eigen::MatrixXd slope(stiffness.size(), size());  // logarithms are linear in x
+  for (int i = 0; i < size(); ++i) {
+    slope.col(i) =
+        (factors_.Apply(Eigen::VectorXd::Unit(size(), i)).stiffness.array() / base).log();
+  }
+  const Eigen::MatrixXd weighted = slope.transpose() * weight.matrix().asDiagonal();
+  const Eigen::MatrixXd normal = weighted * slope + Precision(Eigen::VectorXd::Zero(size()));
+  const Eigen::VectorXd x = normal.ldlt().solve(weighted * (stiffness / base).log().matrix());
+  SpringMassSystem nearest = system;
+  nearest.rest_length = factors_.base().rest_length;
+  nearest.stiffness = factors_.Apply(x).stiffness;
+  nearest.dashpot = nearest.stiffness * (system.dashpot.sum() / system.stiffness.sum());
+  return nearest;
+}
+
 bool SmoothBody::IsLimited(const Eigen::VectorXd& x) const {
   return ComputeStabilityBound(factors_.Apply(x)).timestep < timestep();
 }

@@ -11,6 +11,7 @@
 
 #include "trainer/bodies/body.h"
 #include "trainer/bodies/parameters.h"
+#include "twin/spring_mass_system.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -44,6 +45,11 @@ class SmoothBody {
   // and where that is not enough, its stiffnesses: a fit that could not go there would be stuck.
   SpringMassSystem Apply(const Eigen::VectorXd& x) const;
   bool IsLimited(const Eigen::VectorXd& x) const;  // whether Apply lowers anything
+
+  // A body of this kind that is most like `system`, which has the same springs: their stiffnesses
+  // by least squares of logarithms, in which stiff springs weigh more; its loss time, drag and
+  // contact; rest lengths of the start.
+  SpringMassSystem NearestTo(const SpringMassSystem& system) const;
 
  private:
   // s: what must be stable. A little above the shortest sub-step, so that rounding needs no more.

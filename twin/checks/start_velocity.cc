@@ -13,8 +13,9 @@ namespace physpring {
 namespace {
 
 constexpr int kFewestParabolaFrames = 3, kMostParabolaFrames = 40;
+constexpr int kSurelySteady = 7;       // frames that a parabola fits to
 constexpr double kLongest = 0.2;       // s, the longest time that a parabola is laid through
-constexpr double kFits = 1.3;          // its residuals are no more than so many times the noise
+constexpr double kFits = 1.1;          // its residuals are no more than so many times the noise
 constexpr double kInMotion = 0.6;      // v makes so much of the second step
 constexpr double kSignificant = 2;     // and is so many times its standard error
 constexpr double kSame = 0.5;          // of v there is over half the time
@@ -122,7 +123,9 @@ double Interpolate(const NeighbourSearch& search, const Points& velocities,
 
 // Whether v makes most of the second step, beyond what noise does, and is about the same over half
 // the time. A start from rest that gets faster and faster gives a much smaller v there. One that
-// vibrates from frame to frame goes back in the second step.
+// vibrates from frame to frame goes back in the second step. A stiff body that is let go swings
+// within a few frames, and a parabola may fit to them. So if it fits to few, v must also be more
+// than what a fall from rest gains in a frame.
 bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
                     const MotionScale& scale) {
   const int frames = static_cast<int>(parabolas.weights.size());
@@ -141,7 +144,9 @@ bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
   const double variance = 3 * scale.noise * scale.noise * count;  // of noise along three axes
   const double error = variance * parabolas.weights.squaredNorm() / std::pow(recording.fps, 2);
   const double step = std::max(second_step - 2 * variance, 0.0);
-  return from_velocity > std::pow(kRounding * scale.size, 2) * count &&
+  const double fall = recording.gravity.norm() / std::pow(recording.fps, 2);
+  return (frames >= kSurelySteady || from_velocity > fall * fall * count) &&
+         from_velocity > std::pow(kRounding * scale.size, 2) * count &&
          from_velocity > kSignificant * kSignificant * error &&
          from_velocity > kInMotion * kInMotion * step && from_half > kSame * from_velocity &&
          along > kSame * from_velocity;

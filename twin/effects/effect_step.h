@@ -27,7 +27,8 @@ class EffectStep {
   using State = NodeStates<Real>;
 
   // `springs`: see TensionStep.
-  EffectStep(const SpringMassSystem& system, const Eigen::Vector3d& gravity, int springs)
+  EffectStep(const SpringMassSystem& system, const Eigen::Vector3d& gravity,
+             const SpringView<Real>& springs)
       : effects_(system, gravity),
         nodes_(system.node_count()),
         columns_(static_cast<int>(system.position.cols())),

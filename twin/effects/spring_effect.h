@@ -50,6 +50,7 @@ class LawTension : public SpringTension {
   void AddLaw(const SpringMoments<Real>& springs, const Real* z, Real* z_after,
               Real* tension) const {
     const Law<Real> law(values_, springs.time, springs.step);
+#pragma GCC ivdep  // see below
     for (int i = 0; i < springs.count; ++i) {
       Real internal = Law<Real>::kHasInternal ? z[i] : 0;
       tension[i] += law.Tension(springs[i], &internal);

@@ -31,48 +31,45 @@ struct Pull {
 }  // namespace
 
 template <class Real>
-TensionStep<Real>::TensionStep(const SpringMassSystem& system, int springs, int first_record)
+TensionStep<Real>::TensionStep(const SpringMassSystem& system, const SpringView<Real>& springs,
+                               int first_record)
     : nodes_(system.node_count()),
       controllers_(system.controllers),
-      springs_(springs),
+      springs_(kSpringBlock * springs.blocks),
       end_record_(first_record) {
+  bool feels_pull = false;
   for (std::size_t i = 0; i < system.effects.size(); ++i) {
     const EffectValues& effect = system.effects[i];
     auto law = GetEffect(effect.name).MakeTension(effect.values);
     if (!law) continue;
-    feels_pull_ |= law->feels_pull();
-    const int records = law->has_internal() ? springs / kRecordSize : 0;
+    feels_pull |= law->feels_pull();
+    const int records = law->has_internal() ? springs_ / kRecordSize : 0;
     tensions_.push_back({i, effect.values.size(), std::move(law), end_record_});
     end_record_ += records;
   }
-}
-
-template <class Real>
-template <class Visit>
-void TensionStep<Real>::ForEachPulled(const SpringView<Real>& springs, Visit visit) const {
-  for (int i = 0; i < springs_; ++i) {
+  for (int i = 0; feels_pull && i < springs_; ++i) {
     const auto [node, other] = std::minmax({springs.a[i / kSpringBlock], springs.b[i]});
     const int controller = other - nodes_;
     if (controller < 0 || controller >= controllers_ || node >= nodes_) continue;
-    visit(i, controller, node);
+    pulled_.push_back({i, controller, node});
   }
 }
 
 template <class Real>
 void TensionStep<Real>::MeasurePull(const EffectSubstep<Real>& now,
                                     TensionBuffers<Real>* buffers) const {
-  ForEachPulled(now.springs, [&](int spring, int controller, int node) {
+  for (const auto& [spring, controller, node] : pulled_) {
     buffers->pull[spring] = static_cast<Real>(Pull<Real>(now, nodes_, controller, node).Along());
-  });
+  }
 }
 
 template <class Real>
 void TensionStep<Real>::MeasurePullAdjoint(const EffectSubstep<Real>& now, State* state_bar,
                                            TensionBuffers<Real>* buffers) const {
-  ForEachPulled(now.springs, [&](int spring, int controller, int node) {
+  for (const auto& [spring, controller, node] : pulled_) {
     const Pull<Real> pull(now, nodes_, controller, node);
     const double bar = static_cast<double>(buffers->pull_bar[spring]);
-    if (bar == 0 || pull.length < kShortest) return;
+    if (bar == 0 || pull.length < kShortest) continue;
     // forward: pull = v . d / |d|, d = x_controller - x_node
     buffers->controller_velocity_bar.col(controller) += bar * pull.direction;
     const Eigen::Vector3d d_bar =
@@ -81,7 +78,7 @@ void TensionStep<Real>::MeasurePullAdjoint(const EffectSubstep<Real>& now, State
       (*state_bar)[nodes_ + controller].x[j] += static_cast<Real>(d_bar[j]);
       (*state_bar)[node].x[j] -= static_cast<Real>(d_bar[j]);
     }
-  });
+  }
 }
 
 template <class Real>
@@ -98,7 +95,7 @@ SpringMoments<Real> TensionStep<Real>::Moments(const EffectSubstep<Real>& now,
                                                TensionBuffers<Real>* buffers) const {
   buffers->tension.assign(springs_, 0);
   buffers->pull.resize(springs_);
-  if (feels_pull_) MeasurePull(now, buffers);
+  MeasurePull(now, buffers);
   return {springs_,
           buffers->length.data(),
           buffers->rate.data(),
@@ -165,7 +162,7 @@ void TensionStep<Real>::AddForcesAdjoint(const EffectSubstep<Real>& now,
     gradient.length = buffers->length_bar.data();
     gradient.rate = buffers->rate_bar.data();
   }
-  if (feels_pull_) MeasurePullAdjoint(now, state_bar, buffers);
+  MeasurePullAdjoint(now, state_bar, buffers);
   now.kernel.add_spring_forces_adjoint(springs, now.state.data(), force_bar.data(),
                                        state_bar->data(), gradient);
 }

@@ -53,9 +53,9 @@ class TensionStep {
  public:
   using State = NodeStates<Real>;
 
-  // `springs`: how many there are in the kernel's order, fillings included. The internal variables
-  // begin at the record `first_record` of a state.
-  TensionStep(const SpringMassSystem& system, int springs, int first_record);
+  // `springs`: those of the system in the kernel's order, fillings included; their ends are read
+  // here, and only here. The internal variables begin at the record `first_record` of a state.
+  TensionStep(const SpringMassSystem& system, const SpringView<Real>& springs, int first_record);
 
   // The record of a state behind the internal variables.
   int end_record() const { return end_record_; }
@@ -63,7 +63,7 @@ class TensionStep {
   // A sub-step in parts, for rollouts whose springs are measured side by side. Effects add no
   // tension where there are none `along` springs; some need the places of nodes and controllers.
   bool along() const { return !tensions_.empty(); }
-  bool needs_nodes() const { return feels_pull_; }
+  bool needs_nodes() const { return !pulled_.empty(); }
   // Where length and rate of the springs are written to, before AddTensions is called.
   SpringMeasures<Real> Measures(TensionBuffers<Real>* buffers) const;
   // The tension of each spring. Gives `next` the internal variables.
@@ -91,18 +91,20 @@ class TensionStep {
     int record;  // where its internal variables begin
   };
 
+  // A spring that joins a controller to a node.
+  struct Pulled {
+    int spring, controller, node;
+  };
+
   SpringMoments<Real> Moments(const EffectSubstep<Real>& now, TensionBuffers<Real>* buffers) const;
 
-  // Calls visit(spring, controller, node) for the springs that join a controller to a node.
-  template <class Visit>
-  void ForEachPulled(const SpringView<Real>& springs, Visit visit) const;
   void MeasurePull(const EffectSubstep<Real>& now, TensionBuffers<Real>* buffers) const;
   void MeasurePullAdjoint(const EffectSubstep<Real>& now, State* state_bar,
                           TensionBuffers<Real>* buffers) const;
 
   int nodes_, controllers_;
   int springs_, end_record_;
-  bool feels_pull_ = false;  // one of the laws
+  std::vector<Pulled> pulled_;  // none unless one of the laws feels them
   std::vector<Tension> tensions_;
 };
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/swung_rope.h"
 #include "trainer/bodies/spring_net.h"
 #include "trainer/bodies/start_system.h"
@@ -69,6 +71,30 @@ TEST(SmoothBody, HandsApartHaveStiffnessesOfTheirOwn) {
     EXPECT_TRUE(!moved || rope.start.IsControllerSpring(e));
     EXPECT_NEAR(ratio[e], moved ? std::exp(-1) : 1, 1e-12);
   }
+}
+
+// Springs of one body differ by 30 %; what they have in common is found in them again.
+TEST(SmoothBody, TheNearestOneHasWhatSpringsHaveInCommon) {
+  const Rope rope(1000);
+  const SmoothBody body = rope.Body();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(body.size());
+  const int first = body.factors().first_class();
+  for (int i = 0; i < body.factors().classes().count; ++i) x[first + i] = 0.4 * i - 0.5;
+  const SpringMassSystem truth = body.Apply(x);
+  SpringMassSystem single = truth;
+  for (int e = 0; e < single.spring_count(); ++e)
+    single.stiffness[e] *= std::exp(0.3 * std::sin(7 * e));
+  single.dashpot = 0.01 * single.stiffness;
+  single.drag = 1.5;
+  const SpringMassSystem nearest = body.NearestTo(single);
+  const auto error = [&](const SpringMassSystem& system) {
+    return (system.stiffness.array() / truth.stiffness.array()).log().matrix().norm();
+  };
+  EXPECT_LT(error(nearest), 0.6 * error(single));
+  EXPECT_LT(error(body.NearestTo(truth)), 0.1 * error(single));
+  EXPECT_TRUE(nearest.dashpot.isApprox(0.01 * nearest.stiffness));
+  EXPECT_EQ(nearest.drag, 1.5);
+  EXPECT_EQ(nearest.rest_length, rope.start.rest_length);
 }
 
 }  // namespace

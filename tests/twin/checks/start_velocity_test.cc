@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <random>
 
 #include "tests/support/plain_rope.h"
 
@@ -94,6 +96,28 @@ TEST(StartVelocity, OfABodyThatIsHardlyMeasuredIsNotKnown) {
   const std::optional<StartVelocity> found = EstimateStartVelocity(recording);
   ASSERT_TRUE(found.has_value());
   EXPECT_FALSE(found->measured);
+}
+
+// It is let go, falls into its stiff springs and swings with a period of four frames. What it does
+// in the first two looks like a steady velocity.
+TEST(StartVelocity, OfAStiffBodyThatIsLetGoIsNone) {
+  constexpr double kFps = 40, kAmplitude = 2.4e-3;  // m; falls with 9.5 m/s^2 at first
+  Recording recording;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 2e-4);
+  for (int t = 0; t < 40; ++t) {
+    Points points(3, 30);
+    for (int i = 0; i < 30; ++i) {
+      points.col(i) << 0.03 * (i % 6) + noise(random), 0.03 * (i / 6) + noise(random),
+          1 - kAmplitude * (1 - std::cos(M_PI / 2 * t)) + noise(random);
+    }
+    recording.points.push_back(points);
+    recording.controllers.emplace_back(3, 0);
+  }
+  recording.fps = kFps;
+  recording.train_frames = recording.frame_count();
+  recording.start = recording.points[0];
+  EXPECT_FALSE(EstimateStartVelocity(recording).has_value());
 }
 
 }  // namespace
