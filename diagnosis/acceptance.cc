@@ -15,7 +15,8 @@ constexpr double kNearNoise = 3;        // noise floors
 constexpr Eigen::Index kFreeForm = 20;  // what has more parameters is a free form
 constexpr double kStrong = 0.7, kHopeless = 4, kFarBehind = 16;
 constexpr double kLeastScore = 0.05;  // the least score of a trace, as a part of the best one
-constexpr double kNear = 1.25;  // the largest error that is near, times that of the chosen fit
+constexpr double kNear = 1.25;      // the largest error that is near, times that of the chosen fit
+constexpr double kFitsTell = 0.05;  // smaller differences, in noise floors, fits do not tell
 constexpr int kSimplestDraws = 1000;
 
 }  // namespace
@@ -88,6 +89,7 @@ std::size_t ChooseSimplest(const std::vector<Scored>& fits, double noise_floor, 
     if (fits[i].parameters >= fits[chosen].parameters) continue;
     const std::vector<double> worse = Difference(fits[i].held, least->held);
     if (IsExplained(fits[i].mean, noise_floor) ||
+        fits[i].mean < least->mean + kFitsTell * noise_floor ||
         IsAlike(BlockBootstrap(worse, block, kSimplestDraws, seed))) {
       chosen = i;
     }

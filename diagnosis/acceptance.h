@@ -74,9 +74,9 @@ struct Scored {
   std::vector<double> held;
 };
 
-// Which of `fits` to take: the one with the fewest parameters among those as good as the one with
-// the least error, or no worse than noise. `block`: frames that are drawn together. `fits` is not
-// empty.
+// Which of `fits` to take: the one with the fewest parameters among those that are no worse than
+// noise, or as good as the one with the least error, by chance or by as much as fits can tell.
+// `block`: frames that are drawn together. `fits` is not empty.
 std::size_t ChooseSimplest(const std::vector<Scored>& fits, double noise_floor, int block,
                            std::uint64_t seed);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTracedEffects = 6;  // no more than these are tried on fitted bodies
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-constexpr std::size_t kMostLaws = 4, kMostStrong = 2;
+constexpr std::size_t kMostStrong = 4;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
 // How many steps all fits make, and how many fits go on after that: in all, and with one effect.
@@ -33,8 +33,8 @@ constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 2, 2}}};
 constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 4, 1, 1}, {0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 2> kTrainedCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
-constexpr std::array<Cut, 2> kLawCuts = {{{0.5, 1, 12, 5}, {0.5, 1, 12, 4}}};
-constexpr std::array<Cut, 3> kStrongCuts = {{{0.5, 2, 6, 6}, {0.5, 2, 5, 4}, {0.5, 4, 4, 3}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
+constexpr std::array<Cut, 3> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 2, 6, 4}, {0.5, 4, 4, 3}}};
 constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.2, 2, 8, 2}, {0.1, 3, 5, 1}, {0, 15, 5, 1}}};
 constexpr std::array<Cut, 4> kAgainCuts = {
@@ -166,7 +166,7 @@ std::vector<Descent> FitLaws(const Fitting& fitting, const Descent& body,
     }
     Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
   }
-  Keep(kMostLaws, strong.empty() ? 1 : 2, &fits);
+  Keep(kMostStrong, strong.empty() ? 1 : 2, &fits);
   return fits;
 }
 

@@ -137,6 +137,15 @@ TEST(ChooseSimplest, TakesFewerParametersWhereThatLeavesNoMoreThanNoise) {
   EXPECT_EQ(ChooseSimplest({MakeFit(37, 2, 1), MakeFit(2, 4, 2)}, 3.9, 5, 0), 1U);
 }
 
+// Surely better, but by less than fits can tell.
+TEST(ChooseSimplest, TakesFewerParametersWhereErrorsHardlyDiffer) {
+  const auto steady = [](int parameters, double error) {
+    return Scored{parameters, error, std::vector<double>(100, error)};
+  };
+  EXPECT_EQ(ChooseSimplest({steady(4, 2), steady(2, 2.04)}, 1, 5, 0), 1U);
+  EXPECT_EQ(ChooseSimplest({steady(4, 2), steady(2, 2.06)}, 1, 5, 0), 0U);
+}
+
 TEST(ChooseSimplest, TakesTheOnlyOne) {
   EXPECT_EQ(ChooseSimplest({MakeFit(3, 1, 1)}, 1, 5, 0), 0U);
 }

@@ -71,7 +71,7 @@ TEST(CertaintyOf, IsOfAllEffectsValues) {
   MoveAs(system, true, &recording);
   Random random(1);
   for (Points& points : recording.points) points += random.Box(points.cols(), 1e-3);
-  const Fitting fitting({{system, true, true, "rope"}},
+  const Fitting fitting({{system, true, DiagnosisBody::Kind::kTrusted, "rope"}},
                         {UseAll(recording, SplitRecording::Use::kFit)}, 1);
   const Descent descent = fitting.Begin(0, {{"gravity_direction", Eigen::Vector2d::Zero()},
                                             {"tension_only", Eigen::VectorXd::Zero(1)}});

@@ -24,7 +24,7 @@ class TraceOfATiltedRope : public testing::Test {
   }
 
   std::vector<EffectTrace> Trace(const SpringMassSystem& body, int threads) const {
-    const Fitting fitting({{body, true, true, "rope"}},
+    const Fitting fitting({{body, true, DiagnosisBody::Kind::kTrusted, "rope"}},
                           {UseAll(recording_, SplitRecording::Use::kFit)}, threads);
     return TraceEffects(fitting, fitting.Begin(0, {}),
                         {&GetEffect("control_latency"), &GetEffect("gravity_direction")}, kGain,

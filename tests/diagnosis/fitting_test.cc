@@ -26,7 +26,8 @@ Recording SofterRope() {
 }
 
 Fitting FittingOf(const Recording& recording) {
-  const DiagnosisBody body{MakeStartSystem(recording, {}), true, true, "rope"};
+  const DiagnosisBody body{MakeStartSystem(recording, {}), true, DiagnosisBody::Kind::kTrusted,
+                           "rope"};
   return Fitting({body}, {HoldOutFrames(recording)}, 1);
 }
 
@@ -77,7 +78,8 @@ TEST(Fitting, JudgesWithoutAnObserver) {
 // All springs then have one loss time, the mean one.
 TEST(Fitting, ASmoothBodyBeginsWhereItsDescentIs) {
   const Recording recording = SofterRope();
-  const DiagnosisBody body{MakeStartSystem(recording, {}), true, false, "rope"};
+  const DiagnosisBody body{MakeStartSystem(recording, {}), true, DiagnosisBody::Kind::kOpen,
+                           "rope"};
   const Fitting fitting({body}, {HoldOutFrames(recording)}, 1);
   Descent descent = fitting.Begin(0, {{"gravity_direction", Eigen::Vector2d(0.1, 0)}});
   descent.x.setConstant(0.2);
@@ -98,7 +100,8 @@ TEST(Fitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
   stiff.stiffness *= 1e6;
   stiff.dashpot *= 30;
   ASSERT_GT(DiagnosisRate(stiff, recording.fps), 10000);
-  const Fitting fitting({{stiff, true, true, "rope"}}, {HoldOutFrames(recording)}, 1);
+  const Fitting fitting({{stiff, true, DiagnosisBody::Kind::kTrusted, "rope"}},
+                        {HoldOutFrames(recording)}, 1);
   const Descent descent = fitting.Begin(0, {});
   ASSERT_TRUE(std::isfinite(descent.misfit));
   EXPECT_EQ(

@@ -76,7 +76,7 @@ TEST(FitAllFrames, LeavesTheBodysOwnEffects) {
 
 TEST(FitAllFrames, SaysWhenTheMotionDiverges) {
   const Recording recording = TiltedRope(0.1, 0.1);
-  DiagnosisBody body{MakeStartSystem(recording, {}), true, false, "rope"};
+  DiagnosisBody body{MakeStartSystem(recording, {}), true, DiagnosisBody::Kind::kOpen, "rope"};
   Verdict chosen;
   chosen.system = body.base;
   chosen.system.stiffness *= std::numeric_limits<double>::infinity();
