@@ -13,7 +13,7 @@ namespace {
 constexpr double kExplainedByEffects = 2;
 constexpr double kNearNoise = 3;        // noise floors
 constexpr Eigen::Index kFreeForm = 20;  // what has more parameters is a free form
-constexpr double kStrong = 0.7, kHopeless = 4, kFarBehind = 16;
+constexpr double kStrong = 0.7, kHopeless = 4;
 constexpr double kLeastScore = 0.05;  // the least score of a trace, as a part of the best one
 constexpr double kNear = 1.25;      // the largest error that is near, times that of the chosen fit
 constexpr double kFitsTell = 0.05;  // smaller differences, in noise floors, fits do not tell
@@ -43,10 +43,6 @@ bool IsAlike(const BootstrapResult& worse) { return worse.mean <= worse.error; }
 bool IsStrongLaw(double misfit, double misfit_alone) { return misfit < kStrong * misfit_alone; }
 
 bool IsHopeless(double misfit, double least_misfit) { return misfit > kHopeless * least_misfit; }
-
-bool IsFarBehind(double predicted, double least_misfit) {
-  return predicted > kFarBehind * least_misfit;
-}
 
 bool IsWorthRefit(double score, double best_score) { return score > kLeastScore * best_score; }
 

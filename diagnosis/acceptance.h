@@ -44,8 +44,6 @@ bool IsAlike(const BootstrapResult& worse);
 bool IsStrongLaw(double misfit, double misfit_alone);
 // Whether a fit under an observer is too bad to go on beside the one with the least misfit.
 bool IsHopeless(double misfit, double least_misfit);
-// Whether what a trace predicts is so bad beside the least misfit that no refit is worth it.
-bool IsFarBehind(double predicted, double least_misfit);
 // Whether a trace's score is worth a refit, beside the best one.
 bool IsWorthRefit(double score, double best_score);
 

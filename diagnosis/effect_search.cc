@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <span>
 
 #include "diagnosis/acceptance.h"
+#include "trainer/motion/observer.h"
 
 namespace physpring {
 namespace {
@@ -33,8 +33,9 @@ constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 2, 2}}};
 constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 4, 1, 1}, {0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 2> kTrainedCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 2}}};
 constexpr std::array<Cut, 3> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 2, 6, 4}, {0.5, 4, 4, 3}}};
+constexpr Cut kBestLaws = {0.5, 0, 4, 1}, kBestStrong = {0.5, 0, 4, 2};
 constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};
 constexpr std::array<Cut, 3> kCuts = {{{0.2, 2, 8, 2}, {0.1, 3, 5, 1}, {0, 15, 5, 1}}};
 constexpr std::array<Cut, 4> kAgainCuts = {
@@ -47,7 +48,8 @@ Kind KindOf(const Fitting& fitting, std::size_t body) { return fitting.bodies()[
 bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
 
 // Keeps the best fits by misfit and, beside others, the best one of each free form.
-void Keep(std::size_t count, std::size_t of_an_effect, std::vector<Descent>* fits) {
+// Under the highest gain a fit of few steps may be far off yet, so none is hopeless.
+void Keep(const Cut& cut, std::vector<Descent>* fits) {
   std::stable_sort(fits->begin(), fits->end(),
                    [](const Descent& p, const Descent& q) { return p.misfit < q.misfit; });
   const auto best = std::find_if_not(fits->begin(), fits->end(), HasFreeForm);
@@ -57,9 +59,9 @@ void Keep(std::size_t count, std::size_t of_an_effect, std::vector<Descent>* fit
   std::size_t others = 0;
   std::erase_if(*fits, [&](const Descent& fit) {
     const bool apart = competing && HasFreeForm(fit);
-    if (IsHopeless(fit.misfit, least)) return true;
-    if (kept[fit.hypothesis.NewEffect()]++ >= (apart ? 1 : of_an_effect)) return true;
-    return !apart && others++ >= count;
+    if (cut.gain < kObserverGains[0] && IsHopeless(fit.misfit, least)) return true;
+    if (kept[fit.hypothesis.NewEffect()]++ >= (apart ? 1 : cut.of_an_effect)) return true;
+    return !apart && others++ >= cut.kept;
   });
 }
 
@@ -84,7 +86,7 @@ void Halve(const Fitting& fitting, std::span<const Cut> cuts, const WorkShare& s
       fit.converged = false;
     }
     fitting.Descend(cut.gain, cut.care, cut.steps, fits);
-    Keep(cut.kept, cut.of_an_effect, fits);
+    Keep(cut, fits);
   }
 }
 
@@ -166,7 +168,7 @@ std::vector<Descent> FitLaws(const Fitting& fitting, const Descent& body,
     }
     Halve(fitting, kStrongCuts, stage.Part(0.5, 1), kWithLaw, &fits);
   }
-  Keep(kMostStrong, strong.empty() ? 1 : 2, &fits);
+  Keep(strong.empty() ? kBestLaws : kBestStrong, &fits);
   return fits;
 }
 
@@ -181,16 +183,10 @@ std::vector<EffectTrace> BestTraces(std::vector<EffectTrace> traces) {
   return traces;
 }
 
-// Adds the fit with each of the best effects of a trace, but for those that would be hopeless
-// beside the best of `fits` even if they took all that the trace says.
+// Adds the fit with each of the best effects of a trace.
 void AddTraced(const Descent& fit, const std::vector<EffectTrace>& traces,
                std::vector<Descent>* fits) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Descent& other : *fits) least = std::min(least, other.misfit);
-  for (const EffectTrace& trace : BestTraces(traces)) {
-    if (IsFarBehind((1 - trace.score) * fit.misfit, least)) continue;
-    fits->push_back(With(fit, trace));
-  }
+  for (const EffectTrace& trace : BestTraces(traces)) fits->push_back(With(fit, trace));
 }
 
 // Fits with effects on bodies that were fitted under the highest gain only. They become smooth once
@@ -227,7 +223,7 @@ std::optional<FittedBodies> FitBodies(const Fitting& fitting,
   std::vector<Descent> fits = SmoothAll(fitting, early);
   Halve(fitting, kBodyCuts, stage.Part(0.3, 1), kWithoutEffect, &fits);
   if (trained) fits.push_back(*trained);
-  Keep(1, 1, &fits);
+  Keep(kBodyCuts.back(), &fits);
   if (fits.empty()) return {};
   return FittedBodies{early, fits.front()};
 }
