@@ -17,11 +17,12 @@ constexpr double kMostRate = 2500;  // sub-steps a second
 
 // A rope whose start needs so many sub-steps a second, and how it is fitted.
 struct Rope {
-  Recording recording = SwungRope(12, 10);
-  SpringMassSystem start =
-      MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6});
+  Recording recording;
+  SpringMassSystem start;
 
-  explicit Rope(double rate, double fps = 60) {
+  explicit Rope(double rate, double fps = 60, int points = 12)
+      : recording(SwungRope(points, 10)),
+        start(MakeStartSystem(recording, {.max_neighbours = 6, .controller_max_neighbours = 6})) {
     recording.fps = fps;
     ScaleToSubsteps(1 / fps, rate / fps, kStepSafety, &start);
   }
@@ -73,10 +74,12 @@ TEST(SmoothBody, HandsApartHaveStiffnessesOfTheirOwn) {
   }
 }
 
-// Springs of one body differ by 30 %; what they have in common is found in them again.
+// Springs of one body differ by 30 %; what they have in common is found in them again. There are
+// many more springs than numbers.
 TEST(SmoothBody, TheNearestOneHasWhatSpringsHaveInCommon) {
-  const Rope rope(1000);
+  const Rope rope(1000, 60, 60);
   const SmoothBody body = rope.Body();
+  ASSERT_GT(rope.start.spring_count(), 6 * body.size());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(body.size());
   const int first = body.factors().first_class();
   for (int i = 0; i < body.factors().classes().count; ++i) x[first + i] = 0.4 * i - 0.5;
