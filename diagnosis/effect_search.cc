@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTracedEffects = 6;  // no more than these are tried on fitted bodies
 constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
-constexpr std::size_t kMostStrong = 4;
+constexpr std::size_t kMostStrong = 6;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
 // How many steps all fits make, and how many fits go on after that: in all, and with one effect.
@@ -33,7 +33,7 @@ constexpr std::array<Cut, 1> kEarlyBodyCuts = {{{0.5, 5, 2, 2}}};
 constexpr std::array<Cut, 3> kBodyCuts = {{{0.5, 4, 1, 1}, {0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 2> kTrainedCuts = {{{0.2, 4, 1, 1}, {0.1, 5, 1, 1}}};
 constexpr std::array<Cut, 1> kFreeCuts = {{{0, 15, 1, 1}}};
-constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 2}}};
+constexpr std::array<Cut, 1> kLawCuts = {{{0.5, 2, 12, 4}}};
 constexpr std::array<Cut, 3> kStrongCuts = {{{0.5, 2, 8, 6}, {0.5, 2, 6, 4}, {0.5, 4, 4, 3}}};
 constexpr Cut kBestLaws = {0.5, 0, 4, 1}, kBestStrong = {0.5, 0, 4, 2};
 constexpr std::array<Cut, 1> kEarlyCuts = {{{0.2, 4, 8, 2}}};

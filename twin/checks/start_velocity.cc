@@ -13,9 +13,8 @@ namespace physpring {
 namespace {
 
 constexpr int kFewestParabolaFrames = 3, kMostParabolaFrames = 40;
-constexpr int kSurelySteady = 7;       // frames that a parabola fits to
 constexpr double kLongest = 0.2;       // s, the longest time that a parabola is laid through
-constexpr double kFits = 1.1;          // its residuals are no more than so many times the noise
+constexpr double kFits = 1.3;          // its residuals are no more than so many times the noise
 constexpr double kInMotion = 0.6;      // v makes so much of the second step
 constexpr double kSignificant = 2;     // and is so many times its standard error
 constexpr double kSame = 0.5;          // of v there is over half the time
@@ -123,9 +122,7 @@ double Interpolate(const NeighbourSearch& search, const Points& velocities,
 
 // Whether v makes most of the second step, beyond what noise does, and is about the same over half
 // the time. A start from rest that gets faster and faster gives a much smaller v there. One that
-// vibrates from frame to frame goes back in the second step. A stiff body that is let go swings
-// within a few frames, and a parabola may fit to them. So if it fits to few, v must also be more
-// than what a fall from rest gains in a frame.
+// vibrates from frame to frame goes back in the second step.
 bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
                     const MotionScale& scale) {
   const int frames = static_cast<int>(parabolas.weights.size());
@@ -144,12 +141,34 @@ bool StartsInMotion(const Recording& recording, const Parabolas& parabolas,
   const double variance = 3 * scale.noise * scale.noise * count;  // of noise along three axes
   const double error = variance * parabolas.weights.squaredNorm() / std::pow(recording.fps, 2);
   const double step = std::max(second_step - 2 * variance, 0.0);
-  const double fall = recording.gravity.norm() / std::pow(recording.fps, 2);
-  return (frames >= kSurelySteady || from_velocity > fall * fall * count) &&
-         from_velocity > std::pow(kRounding * scale.size, 2) * count &&
+  return from_velocity > std::pow(kRounding * scale.size, 2) * count &&
          from_velocity > kSignificant * kSignificant * error &&
          from_velocity > kInMotion * kInMotion * step && from_half > kSame * from_velocity &&
          along > kSame * from_velocity;
+}
+
+// Whether the first step may be that of a body that was held at rest and is let go: the hands stand
+// still, and it goes down, no further than a free fall. A stiff one swings within a few frames, and
+// what it does first looks like a velocity.
+bool MayBeLetGo(const Recording& recording, double noise) {
+  constexpr double kStill = 0.2;      // of a free fall
+  constexpr double kFurthest = 1.1;   // of a free fall
+  constexpr double kDownwards = 0.7;  // a cosine
+  const double gravity = recording.gravity.norm();
+  if (gravity == 0) return false;
+  const double fall = 0.5 * gravity / std::pow(recording.fps, 2);
+  const Points hands = recording.controllers[1] - recording.controllers[0];
+  if (hands.size() > 0 && hands.colwise().norm().maxCoeff() > kStill * fall) return false;
+  double square = 0, down = 0, count = 0;
+  for (Eigen::Index i = 0; i < recording.point_count(); ++i) {
+    if (!SeenInAll(recording.points, 2, i)) continue;
+    const Eigen::Vector3d step = recording.points[1].col(i) - recording.points[0].col(i);
+    square += step.squaredNorm() - 6 * noise * noise;
+    down += step.dot(recording.gravity) / gravity;
+    ++count;
+  }
+  const double length = std::sqrt(std::max(square, 0.0) * count);  // sum of steps all alike
+  return down > kDownwards * length && length < kFurthest * fall * count;
 }
 
 }  // namespace
@@ -161,7 +180,9 @@ std::optional<StartVelocity> EstimateStartVelocity(const Recording& recording) {
   }
   const MotionScale scale = ScaleOf(recording);
   const Parabolas parabolas = LongestParabolas(recording, scale.noise);
-  if (!StartsInMotion(recording, parabolas, scale)) return std::nullopt;
+  if (!StartsInMotion(recording, parabolas, scale) || MayBeLetGo(recording, scale.noise)) {
+    return std::nullopt;
+  }
   const Known known = KnownVelocities(recording, parabolas.weights);
   StartVelocity start{Points::Zero(3, recording.particle_count()),
                       static_cast<int>(parabolas.weights.size()), true};
