@@ -3,8 +3,8 @@
 // frames of each point,
 //   x(t) = x_0 + v t + a t^2 / 2,
 // over as many frames as it fits to within the noise. The start is in motion if v alone makes most
-// of the second step. A start from rest gives v = 0 up to the noise and the change of a. A body that
-// may have been let go from rest in frame 0 is taken to be at rest.
+// of the second step. A start from rest gives v = 0 up to the noise and the change of a. A body
+// that may have been let go from rest in frame 0 is taken to be at rest.
 #ifndef PHYSPRING_TWIN_CHECKS_START_VELOCITY_H_
 #define PHYSPRING_TWIN_CHECKS_START_VELOCITY_H_
 
