@@ -106,10 +106,6 @@ std::vector<Descent> SmoothAll(const Fitting& fitting, std::vector<Descent> fits
   return fits;
 }
 
-std::optional<Descent> First(const std::vector<Descent>& fits) {
-  return fits.empty() ? std::nullopt : std::optional<Descent>(fits.front());
-}
-
 // The descents of all bodies whose kind passes, as they begin; those that diverge are left out.
 std::vector<Descent> BeginAll(const Fitting& fitting, const std::vector<EffectValues>& known,
                               bool (*passes)(Kind)) {
@@ -120,14 +116,6 @@ std::vector<Descent> BeginAll(const Fitting& fitting, const std::vector<EffectVa
     if (fit.x.size() > 0) fits.push_back(std::move(fit));
   }
   return fits;
-}
-
-// The fit with one more effect, from where the fit is.
-Descent With(const Descent& fit, const EffectTrace& trace) {
-  Descent with = fit;
-  with.hypothesis.effects.push_back({trace.effect->name(), trace.start});
-  with.x.conservativeResizeLike(Eigen::VectorXd::Zero(fit.x.size() + trace.start.size()));
-  return with;
 }
 
 // The laws that fit best. They change bodies so much that common factors begin anew; so does the
@@ -186,7 +174,9 @@ std::vector<EffectTrace> BestTraces(std::vector<EffectTrace> traces) {
 // Adds the fit with each of the best effects of a trace.
 void AddTraced(const Descent& fit, const std::vector<EffectTrace>& traces,
                std::vector<Descent>* fits) {
-  for (const EffectTrace& trace : BestTraces(traces)) fits->push_back(With(fit, trace));
+  for (const EffectTrace& trace : BestTraces(traces)) {
+    fits->push_back(fit.WithNewEffect({trace.effect->name(), trace.start}));
+  }
 }
 
 // Fits with effects on bodies that were fitted under the highest gain only. They become smooth once
@@ -210,7 +200,8 @@ std::optional<Descent> FitTrained(const Fitting& fitting, const std::vector<Effe
   std::vector<Descent> fits = SmoothAll(
       fitting, BeginAll(fitting, known, [](Kind kind) { return kind == Kind::kTrained; }));
   Halve(fitting, kTrainedCuts, stage, kWithoutEffect, &fits);
-  return First(fits);
+  if (fits.empty()) return {};
+  return fits.front();
 }
 
 std::optional<FittedBodies> FitBodies(const Fitting& fitting,

@@ -166,13 +166,9 @@ std::string WhyNotWorthIt(const Inquiry& inquiry, const Attempt& attempt) {
 
 // What was chosen, on the body of the best fit without it; empty if that is a training.
 Descent BesideAccepted(const Attempt& attempt) {
-  Descent beside = attempt.beside.accepted.descent;
-  const Eigen::Index size = beside.x.size();
-  if (size == 0) return beside;
-  const EffectValues& found = attempt.chosen().system.effects.back();
-  beside.hypothesis.effects.push_back(found);
-  beside.x.conservativeResizeLike(Eigen::VectorXd::Zero(size + found.values.size()));
-  return beside;
+  const Descent& accepted = attempt.beside.accepted.descent;
+  if (accepted.x.size() == 0) return accepted;
+  return accepted.WithNewEffect(attempt.chosen().system.effects.back());
 }
 
 // Searches for one more effect, unless nothing is left to explain. What is chosen is fitted once

@@ -49,6 +49,13 @@ struct Descent {
   double damping = 1e-2;
   bool converged = false;
 
+  // The same with one more effect, as it begins.
+  Descent WithNewEffect(const EffectValues& effect) const {
+    Descent with = *this;
+    with.hypothesis.effects.push_back(effect);
+    with.x.conservativeResizeLike(Eigen::VectorXd::Zero(x.size() + effect.values.size()));
+    return with;
+  }
   // The same without the new effect.
   Descent WithoutNewEffect() const {
     Descent without = *this;
