@@ -188,6 +188,53 @@ class Relaxation(OfSprings):
         return self.share * self.k * (self.state - stretch)
 
 
+class Push(NoEffect):
+    """A periodic force on the whole body; no effect of a diagnosis' list."""
+    name = "law_push"
+
+    def __init__(self, random, strength):
+        self.rate = random.uniform(3, 12)
+        way = random.normal(size=3)
+        self.amplitude = 1.5 * strength * way / np.linalg.norm(way)
+        self.truth = {"acceleration_m_per_s2": self.amplitude.tolist(), "rate_rad_per_s": self.rate}
+
+    def start(self, system):
+        self.mass = system["mass"][:, None]
+
+    def force(self, time, x, v):
+        return self.mass * self.amplitude * np.sin(self.rate * time)
+
+
+class Ageing(OfSprings):
+    """Springs whose stiffness grows with the square of time."""
+    name = "law_ageing"
+
+    def __init__(self, random, strength):
+        self.growth = 0.3 * strength
+        self.truth = {"growth_per_s2": self.growth}
+
+    def tension(self, time, step, length, stretch, rate):
+        return self.growth * time ** 2 * self.k * stretch
+
+
+class Magnet(NoEffect):
+    """An attraction to a point that circles below the body."""
+    name = "law_magnet"
+
+    def __init__(self, random, strength):
+        self.strength, self.rate = 0.02 * strength, random.uniform(4, 9)
+        self.truth = {"strength_m3_per_s2": self.strength, "rate_rad_per_s": self.rate}
+
+    def start(self, system):
+        self.mass = system["mass"][:, None]
+        self.middle = system["points"].mean(axis=0) - [0, 0, 0.1]
+
+    def force(self, time, x, v):
+        turn = self.rate * time
+        d = self.middle + 0.12 * np.array([np.cos(turn), np.sin(turn), 0]) - x
+        return self.strength * self.mass * d / ((d ** 2).sum(axis=1, keepdims=True) + 9e-4) ** 1.5
+
+
 class Both(NoEffect):
     def __init__(self, one, other):
         self.parts, self.name = (one, other), f"{one.name} {other.name}"
@@ -207,6 +254,7 @@ class Both(NoEffect):
 
 EFFECTS = [Wind, Payload, TiltedGravity, Tether, LateHands, Yield, Friction, Stiffening, Slack,
            Relaxation]
+LAWS = [Push, Ageing, Magnet]
 
 
 def strong_enough(kind, seed, clean, simulate):
@@ -261,6 +309,7 @@ def main():
     parser.add_argument("output", type=pathlib.Path, help="folder")
     parser.add_argument("--cases", type=int, default=40)
     parser.add_argument("--pairs", action="store_true", help="two effects at once")
+    parser.add_argument("--laws", action="store_true", help="laws that are not in the list")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--amplitude", type=float, default=0.012, help="of the hands, m")
     args = parser.parse_args()
@@ -274,6 +323,8 @@ def main():
         kinds = [None] if number % 4 == 3 else list(order.permutation(EFFECTS))
         if args.pairs:
             kinds = [pair_of(random) for _ in range(10)]
+        if args.laws:
+            kinds = [LAWS[number % len(LAWS)]] * 5
         line = write_case(args.output, case, bodies(random)[name], kinds, random, args.amplitude)
         key[case] = {"object": name, **line}
         print(case, line["effect"], line["mean_displacement_due_to_effect_m"], flush=True)

@@ -90,7 +90,8 @@ Json Run(const Case& one) {
   DiagnosisOptions options;
   options.most_effects = 1;
   const std::clock_t begin = std::clock();
-  const Diagnosis diagnosis = Diagnose(TwinOf(made.fit), {made.fit}, {made.other}, options);
+  const Diagnosis diagnosis =
+      Diagnose(TwinOf(made.fit), {.fit = {made.fit}, .held_out = {made.other}}, options);
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   Json ranking = Json::array();  // of what was refitted
   for (const EffectCandidate& candidate : diagnosis.rankings.at(0)) {

@@ -21,6 +21,7 @@
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
+#include "cli/training_recordings.h"
 #include "cli/warnings.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/diagnosis_recordings.h"
@@ -40,7 +41,8 @@ namespace {
 
 struct DiagnoseArguments {
   std::string twin, output, json;
-  std::vector<std::string> recordings, held_out;
+  std::vector<std::string> recordings, held_out, before;
+  bool look_for_before = true;  // in the folders of the twin and the recordings
   DiagnosisOptions options;
   ResumeOptions run;
 };
@@ -49,14 +51,39 @@ struct Outputs {
   std::string report, page, twin, checkpoint;
 };
 
-// Throws Error if the recording to judge by is one of those to fit, or a copy.
-void ExpectNotFitted(const Recording& judged, const std::string& path,
-                     const std::vector<Recording>& fit) {
-  for (const Recording& recording : fit) {
-    if (recording.hash != judged.hash) continue;
-    throw Error(fmt::format("{}: is among the recordings to fit, too, as {}; it cannot judge them",
-                            path, recording.name));
+// Throws Error if the recording is one of `others`, or a copy.
+void ExpectNotAmong(const std::vector<Recording>& others, const Recording& recording,
+                    const std::string& path, const char* what, const char* why) {
+  for (const Recording& other : others) {
+    if (other.hash != recording.hash) continue;
+    throw Error(
+        fmt::format("{}: is among the recordings {}, too, as {}; {}", path, what, other.name, why));
   }
+}
+
+// The recordings of the object before it changed: those that are given, or those that the twin was
+// trained on, if they are there and none of them is diagnosed. What effects a twin has already may
+// be of a change since.
+std::vector<Recording> RecordingsBefore(const DiagnoseArguments& arguments, const Twin& twin,
+                                        const FitData& data, const std::vector<Recording>& judged) {
+  std::vector<Recording> before;
+  for (const RecordingEntry& entry : ListRecordings(arguments.before, Role::kFit)) {
+    before.push_back(ReadRecording(entry.path));
+    for (const auto* others : {&data.recordings, &judged}) {
+      ExpectNotAmong(*others, before.back(), entry.path, "to diagnose",
+                     "it is from before the change or from after it");
+    }
+  }
+  if (!before.empty() || !arguments.look_for_before) return before;
+  if (!twin.levels[0].system.effects.empty()) return {};
+  for (const auto* others : {&data.recordings, &judged}) {
+    for (const Recording& recording : *others) {
+      if (twin.TrainingOn(recording.hash)) return {};
+    }
+  }
+  std::vector<std::string> files = arguments.recordings;
+  files.push_back(arguments.twin);
+  return FindTrainingRecordings(twin, files);
 }
 
 // A recording may declare another mass than the twin has; what it weighs shows in its motion alone.
@@ -109,8 +136,7 @@ Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<Record
 
 // Diagnoses with progress and checkpoints. A signal leaves a checkpoint and throws Interrupted.
 Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
-                       const std::vector<Recording>& recordings,
-                       const std::vector<Recording>& held_out, const DiagnoseArguments& arguments) {
+                       const DiagnosisRecordings& recordings, const DiagnoseArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const InterruptWatch watch;
   Journal journal;
@@ -133,7 +159,7 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
   DiagnosisOptions options = arguments.options;
   options.journal = &journal;
   try {
-    Diagnosis diagnosis = Diagnose(twin, recordings, held_out, options);
+    Diagnosis diagnosis = Diagnose(twin, recordings, options);
     checkpoint.Write(journal);
     return diagnosis;
   } catch (const Stopped&) {
@@ -153,24 +179,24 @@ void Run(const DiagnoseArguments& arguments) {
   std::vector<Recording> judged;
   for (const RecordingEntry& entry : held_out) {
     judged.push_back(ReadRecording(entry.path));
-    ExpectNotFitted(judged.back(), entry.path, data.recordings);
+    ExpectNotAmong(data.recordings, judged.back(), entry.path, "to fit", "it cannot judge them");
   }
-  for (std::vector<Recording>* recordings : {&data.recordings, &judged}) {
+  std::vector<Recording> before = RecordingsBefore(arguments, twin, data, judged);
+  for (std::vector<Recording>* recordings : {&data.recordings, &judged, &before}) {
     for (Recording& recording : *recordings) {
       WarnOfOddNumbering(twin, recording.name, &recording);
     }
     PrintRemarks(*recordings);
   }
-  const DiagnosisRecordings chosen = ChooseRecordings(data, judged);
+  const DiagnosisRecordings chosen = ChooseRecordings(data, judged, before);
   const Outputs outputs = MakeOutputs(arguments, fit, held_out);
   const OutputLock lock(arguments.output);
-  const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen.fit,
-                                       chosen.held_out, arguments.options);
+  const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen,
+                                       arguments.options);
   const bool replace = arguments.run.resume || arguments.run.force;
   checkpoint.ExpectReplaceable(outputs.report, replace);
   for (const std::string& output : {outputs.page, outputs.twin}) ExpectNew(output, replace);
-  const Diagnosis diagnosis =
-      DiagnoseWith(checkpoint, twin, chosen.fit, chosen.held_out, arguments);
+  const Diagnosis diagnosis = DiagnoseWith(checkpoint, twin, chosen, arguments);
   const std::string json = FormatDiagnosisJson(diagnosis);
   WriteFileAtomically(outputs.report, json);
   if (!arguments.json.empty()) WriteFileAtomically(arguments.json, json);
@@ -212,6 +238,16 @@ void AddDiagnoseCommand(CLI::App& app) {
                    "recordings to judge by (of many, some); without them whole runs, of fewer than "
                    "four the future frames, or blocks of frames")
       ->type_name("REC.npz|DIR");
+  command
+      ->add_option("--before", arguments->before,
+                   "recordings of the object before it changed; fitted, too, without new effects "
+                   "(default: those that the twin was trained on, if they lie beside the twin or "
+                   "the recordings)")
+      ->type_name("REC.npz|DIR");
+  command
+      ->add_flag("!--no-before", arguments->look_for_before,
+                 "do not look for recordings that the twin was trained on")
+      ->excludes("--before");
   command->add_option("--json", arguments->json, "write report.json here, too")
       ->type_name("FILE.json");
   AddResumeOptions(command, &arguments->run,

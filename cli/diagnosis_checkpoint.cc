@@ -54,14 +54,14 @@ Json ReadOf(const Npz& arrays, const std::string& path) {
 }  // namespace
 
 DiagnosisCheckpoint::DiagnosisCheckpoint(const std::string& path, const std::string& twin,
-                                         const std::vector<Recording>& recordings,
-                                         const std::vector<Recording>& held_out,
+                                         const DiagnosisRecordings& recordings,
                                          const DiagnosisOptions& options)
     : path_(path),
       of_json_(Json{{"version", kTrainingCode},
                     {"twin", HashFile(twin)},
-                    {"recordings", HashesOf(recordings)},
-                    {"held-out recordings", HashesOf(held_out)},
+                    {"recordings", HashesOf(recordings.fit)},
+                    {"held-out recordings", HashesOf(recordings.held_out)},
+                    {"recordings before the change", HashesOf(recordings.before)},
                     {"seed", options.seed}}
                    .dump()) {}
 

@@ -16,8 +16,7 @@ class DiagnosisCheckpoint {
  public:
   // The checkpoint at `path` of the diagnosis of the file `twin` on these recordings.
   DiagnosisCheckpoint(const std::string& path, const std::string& twin,
-                      const std::vector<Recording>& recordings,
-                      const std::vector<Recording>& held_out, const DiagnosisOptions& options);
+                      const DiagnosisRecordings& recordings, const DiagnosisOptions& options);
 
   const std::string& path() const { return path_; }
 

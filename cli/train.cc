@@ -117,9 +117,7 @@ Twin ReadLevel0(const std::string& path, const FitData& data) {
   WarnIfUnfinished(twin, path);
   ExpectSameObject(twin, data.recordings[0]);
   for (const Recording& recording : data.recordings) {
-    const bool known = std::any_of(twin.trained_on.begin(), twin.trained_on.end(),
-                                   [&](const TrainedOn& t) { return t.hash == recording.hash; });
-    if (!known) {
+    if (!twin.TrainingOn(recording.hash)) {
       throw Error(
           fmt::format("{}: was not trained on recording {}; --from needs a twin of the same "
                       "recordings",

@@ -23,6 +23,8 @@ constexpr int kSimplestDraws = 1000;
 
 bool IsExplained(double error, double noise_floor) { return error < kExplained * noise_floor; }
 
+bool IsUnexplained(double error, double noise_floor) { return error > 2.5 * noise_floor; }
+
 bool IsNearNoise(double error, double noise_floor) { return error < kNearNoise * noise_floor; }
 
 bool NothingIsLeft(int accepted, double error, double noise_floor) {

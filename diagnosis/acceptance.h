@@ -20,6 +20,9 @@ inline constexpr double kExplained = 1.05;
 
 bool IsExplained(double error, double noise_floor);
 
+// Whether an error leaves so much that it is told where it comes from.
+bool IsUnexplained(double error, double noise_floor);
+
 // Whether an error is so near to noise that a more careful fit of the body may get there.
 bool IsNearNoise(double error, double noise_floor);
 

@@ -21,32 +21,23 @@ namespace {
 
 using Use = SplitRecording::Use;
 
-// An error above this, times the noise floor, leaves something to explain.
-constexpr double kUnexplained = 2.5;
 constexpr int kFewestFitted = 8, kFewestJudged = 5;  // frames in which points are seen
 // Shares of the work, as the journal tells it: the loop over effects, the residual forces, the last
 // fit.
 constexpr WorkShare kLoopShare{0, 0.94}, kResidualShare{0.94, 0.96}, kLastShare{0.96, 1};
 
-// What the twin says of its training on the recording; end() if it was not trained on it.
-template <class List>  // std::vector<TrainedOn>, const or not
-auto FindTraining(List& trained_on, const Recording& recording) {
-  return std::find_if(trained_on.begin(), trained_on.end(), [&](const TrainedOn& trained) {
-    return !trained.hash.empty() && trained.hash == recording.hash;
-  });
-}
-
-bool TrainedOnThis(const Twin& twin, const Recording& recording) {
-  return FindTraining(twin.trained_on, recording) != twin.trained_on.end();
-}
-
-std::vector<SplitRecording> SplitAll(const std::vector<Recording>& recordings,
-                                     const std::vector<Recording>& held_out) {
+// In the order fitted, held out, before the change.
+std::vector<SplitRecording> SplitAll(const DiagnosisRecordings& recordings) {
   std::vector<SplitRecording> splits;
-  for (const Recording& recording : recordings) {
-    splits.push_back(held_out.empty() ? HoldOutFrames(recording) : UseAll(recording, Use::kFit));
+  const bool frames_judge = recordings.held_out.empty();
+  for (const Recording& recording : recordings.fit) {
+    splits.push_back(frames_judge ? HoldOutFrames(recording) : UseAll(recording, Use::kFit));
   }
-  for (const Recording& recording : held_out) splits.push_back(UseAll(recording, Use::kHeld));
+  for (const Recording& r : recordings.held_out) splits.push_back(UseAll(r, Use::kHeld));
+  for (const Recording& recording : recordings.before) {
+    splits.push_back(UseAll(recording, Use::kFit));
+    splits.back().before_change = true;
+  }
   return splits;
 }
 
@@ -95,13 +86,13 @@ double MotionlessTrack(const std::vector<SplitRecording>& splits) {
 }
 
 // Whether training has seen none of the frames that are held out.
-bool HasNotSeenHeldOut(const Twin& twin, const std::vector<Recording>& recordings,
-                       const std::vector<Recording>& held_out) {
+bool HasNotSeenHeldOut(const Twin& twin, const DiagnosisRecordings& recordings) {
+  const std::vector<Recording>& held_out = recordings.held_out;
   if (!held_out.empty()) {
     return std::none_of(held_out.begin(), held_out.end(),
-                        [&](const Recording& r) { return TrainedOnThis(twin, r); });
+                        [&](const Recording& r) { return twin.TrainingOn(r.hash); });
   }
-  return std::all_of(recordings.begin(), recordings.end(),
+  return std::all_of(recordings.fit.begin(), recordings.fit.end(),
                      [](const Recording& r) { return r.train_frames < r.frame_count(); });
 }
 
@@ -137,35 +128,40 @@ Twin TwinWith(Twin twin, const Verdict& verdict, std::size_t own,
     const Recording& recording = *split.recording;
     const int fitted = split.last(Use::kFit);
     if (fitted == 0) continue;
-    const auto known = FindTraining(twin.trained_on, recording);
-    if (known == twin.trained_on.end()) {
+    const TrainedOn* known = twin.TrainingOn(recording.hash);
+    if (!known) {
       twin.trained_on.push_back({recording.name, recording.hash, fitted});
     } else {
-      known->train_frames = std::max(known->train_frames, fitted);
+      int& frames =
+          twin.trained_on[static_cast<std::size_t>(known - twin.trained_on.data())].train_frames;
+      frames = std::max(frames, fitted);
     }
   }
   return twin;
 }
 
 // A diagnosis that says only what it is about. Throws Error if a recording is of another object.
-Diagnosis Introduce(const Twin& twin, const std::vector<Recording>& recordings,
-                    const std::vector<Recording>& held_out) {
+Diagnosis Introduce(const Twin& twin, const DiagnosisRecordings& recordings) {
   Diagnosis result;
-  for (const Recording& recording : recordings) {
+  for (const Recording& recording : recordings.fit) {
     ExpectSameObject(twin, recording);
-    result.trained_on |= TrainedOnThis(twin, recording);
+    result.trained_on |= twin.TrainingOn(recording.hash) != nullptr;
     result.fitted.push_back(recording.name);
   }
-  for (const Recording& recording : held_out) {
+  for (const Recording& recording : recordings.held_out) {
     ExpectSameObject(twin, recording);
     result.judged.push_back(recording.name);
+  }
+  for (const Recording& recording : recordings.before) {
+    ExpectSameObject(twin, recording);
+    result.before_change.push_back(recording.name);
   }
   return result;
 }
 
 // Tells what the findings say of held-out frames, and the effects with their certainty.
-void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
-          const std::vector<EffectValues>& known, Diagnosis* result) {
+void Tell(const Fitting& fitting, const Findings& findings, const std::vector<EffectValues>& known,
+          Diagnosis* result) {
   const Verdict &before = findings.before, &accepted = findings.accepted;
   result->before = before.track;
   result->before_track = before.held;
@@ -173,8 +169,9 @@ void Tell(const Fitting& fitting, const Findings& findings, std::uint64_t seed,
   result->refusal = findings.refusal;
   result->after = accepted.track;
   result->after_track = accepted.held;
-  result->gain = GainOf(fitting, seed, before.held, accepted.held);
+  result->gain = findings.gain;
   result->effects = NewEffects(accepted, known);
+  result->law_terms = findings.law_terms;
   if (result->effects.empty()) return;
   result->certainty = CertaintyOf(fitting, findings.accepted.descent);
   result->certainty.erase(result->certainty.begin(),
@@ -191,7 +188,7 @@ void TellResidual(const Fitting& fitting, const Findings& findings, double noise
   result->residual_before = residuals.front();
   result->residual_after = residuals.back();
   const double error = findings.accepted.track.held;
-  if (error > kUnexplained * result->noise_floor) {
+  if (IsUnexplained(error, result->noise_floor)) {
     result->unexplained = FindUnexplained(result->residual_after, error - result->noise_floor,
                                           fitting.recordings()[0].recording->fps);
   }
@@ -207,35 +204,35 @@ void KeepFits(const Twin& twin, const Findings& findings, std::size_t own,
 
 }  // namespace
 
-Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
-                   const std::vector<Recording>& held_out, const DiagnosisOptions& options) {
-  Diagnosis result = Introduce(twin, recordings, held_out);
-  std::vector<SplitRecording> splits = SplitAll(recordings, held_out);
+Diagnosis Diagnose(const Twin& twin, const DiagnosisRecordings& recordings,
+                   const DiagnosisOptions& options) {
+  Diagnosis result = Introduce(twin, recordings);
+  std::vector<SplitRecording> splits = SplitAll(recordings);
   ExpectSplit(splits);
   const double noise = NoiseOf(splits);
   for (SplitRecording& split : splits) result.resting_frames += LeaveOutRest(noise, &split);
   result.noise_floor = TrackNoiseFloor(noise);
   result.motionless = MotionlessTrack(splits);
-  const Fitting fitting(BodiesOf(twin, recordings[0], result.trained_on), splits, options.threads,
-                        options.journal);
   // `own` are the effects of the body itself, if it has any; `known` are those of the twin so far
-  const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   const std::vector<EffectValues>& known = twin.levels[0].system.effects;
+  const Fitting fitting(BodiesOf(twin, recordings.fit[0], result.trained_on), splits,
+                        options.threads, options.journal, known.size());
+  const std::vector<EffectValues>& own = fitting.bodies()[0].base.effects;
   std::optional<Verdict> trained;  // training took more care than a refit of springs does
-  if (result.trained_on && HasNotSeenHeldOut(twin, recordings, held_out)) {
+  if (result.trained_on && HasNotSeenHeldOut(twin, recordings)) {
     trained = JudgeTwin(twin, splits);
   }
   const auto findings = FindEffects(fitting, result.noise_floor, options, kLoopShare,
                                     own.empty() ? known : std::vector<EffectValues>(), trained);
   if (!findings) {
     throw Error(fmt::format("recording {}: twin {} diverges, so there is nothing to diagnose",
-                            recordings[0].name, twin.name));
+                            recordings.fit[0].name, twin.name));
   }
-  Tell(fitting, *findings, options.seed, known, &result);
+  Tell(fitting, *findings, known, &result);
   TellResidual(fitting, *findings, noise, &result);
   KeepFits(twin, *findings, own.size(), splits, &result);
   std::optional<Verdict> last;
-  if (held_out.empty() && !result.effects.empty()) {
+  if (recordings.held_out.empty() && !result.effects.empty()) {
     last = FitAllFrames(fitting, kLastShare, findings->accepted);
   }
   if (last) {

@@ -13,8 +13,9 @@
 //               bootstrap) and by more than a small part
 //   6  repeat from 3, until nothing is accepted; where another effect was about as good,
 //               beside that, too: what is added next tells which of them it is
-//   7  tell    the forces that are still missing, before and after (residual_force.h)
-//   8  end     where frames were held out, and no recordings: what was found is fitted to these
+//   7  law     if much is left, terms of a law that is not in the list of effects (law_search.h)
+//   8  tell    the forces that are still missing, before and after (residual_force.h)
+//   9  end     where frames were held out, and no recordings: what was found is fitted to these
 //               frames, too (last_fit.h)
 #ifndef PHYSPRING_DIAGNOSIS_DIAGNOSIS_H_
 #define PHYSPRING_DIAGNOSIS_DIAGNOSIS_H_
@@ -26,6 +27,7 @@
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/block_bootstrap.h"
+#include "diagnosis/diagnosis_recordings.h"
 #include "diagnosis/effect_certainty.h"
 #include "diagnosis/fitting.h"
 #include "diagnosis/residual_pattern.h"
@@ -64,6 +66,7 @@ using EffectRanking = std::vector<EffectCandidate>;
 
 struct Diagnosis {
   std::vector<std::string> fitted, judged;  // names of recordings; none judged: frames are held out
+  std::vector<std::string> before_change;   // names of those of the object before it changed
   int resting_frames = 0;                   // frames at rest that are left out (split_recording.h)
   bool trained_on = false;                  // the twin was trained on one of the recordings
   double noise_floor = 0;                   // track error of a perfect model, m
@@ -71,6 +74,7 @@ struct Diagnosis {
   TrackPair before{}, after{};
   BootstrapResult gain;  // the gain of all accepted effects together, on held-out frames
   std::vector<EffectValues> effects;
+  int law_terms = 0;  // so many of the last ones are terms of a law that is not in the list
   // One for each value of `effects`, one effect after the other.
   std::vector<ValueCertainty> certainty;
   std::vector<EffectRanking> rankings;  // one for each round; i effects are accepted before round i
@@ -89,11 +93,11 @@ struct Diagnosis {
   std::vector<std::vector<FrameUse>> uses;
 };
 
-// `held_out` may be empty: then the future frames of the recordings are held out, or blocks of
-// frames where a recording has no future. Throws Error if a recording is not of the twin's object,
-// no frame is left to fit or to judge by, or the twin cannot be simulated.
-Diagnosis Diagnose(const Twin& twin, const std::vector<Recording>& recordings,
-                   const std::vector<Recording>& held_out, const DiagnosisOptions& options);
+// Where no recordings are held out, the future frames of those to fit are, or blocks of frames
+// where a recording has no future. Throws Error if a recording is not of the twin's object, no
+// frame is left to fit or to judge by, or the twin cannot be simulated.
+Diagnosis Diagnose(const Twin& twin, const DiagnosisRecordings& recordings,
+                   const DiagnosisOptions& options);
 
 }  // namespace physpring
 

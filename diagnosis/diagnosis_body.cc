@@ -55,15 +55,17 @@ Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording
 }  // namespace
 
 std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording, bool trained_on) {
-  const bool chain = IsBendingChain(twin.levels[0].system);
   using Kind = DiagnosisBody::Kind;
-  DiagnosisBody own{twin.levels[0].system, twin.controller_velocity,
-                    chain || !trained_on ? Kind::kTrusted : Kind::kOpen, "as trained"};
-  if (chain) return {own};
-  own.base.effects.clear();
-  if (!trained_on) return {own};
-  DiagnosisBody trained = own;
-  trained.kind = Kind::kTrained;
+  DiagnosisBody trained{twin.levels[0].system, twin.controller_velocity, Kind::kTrained,
+                        "as trained"};
+  if (IsBendingChain(trained.base)) {
+    trained.kind = Kind::kTrusted;
+    return {trained};
+  }
+  trained.base.effects.clear();
+  if (!trained_on) return {trained};
+  DiagnosisBody own = trained;
+  own.kind = Kind::kOpen;
   own.base = MakeAlike(own.base);
   trained.base = SmoothlyAs(trained.base, own.base, recording);
   std::vector<DiagnosisBody> bodies = {own};

@@ -5,10 +5,12 @@
 //   neighbour count with either treatment of controllers is a body of equal springs, and which one
 //   is right is found together with the effect. One more begins where the training ended, as a
 //   smooth body (trainer/bodies/smooth_body.h): training looks for the right valley with more care.
-//   A twin that was trained on other recordings knows its object: it is the only body, and its own
-//   parameters hardly move.
-//   So does a chain that bends (trainer/bodies/bending_chain.h), whatever it was trained on: a few
-//   common factors can bend to little. What it has of effects belongs to it, and stays.
+//   A twin that was trained on other recordings knows its object: its springs are the only body.
+//   They move by what a smooth body has of numbers, since no training is without errors, and these
+//   must not be taken for effects.
+//   A chain that bends (trainer/bodies/bending_chain.h) is the only body, too, whatever it was
+//   trained on. Its own parameters hardly move: a few common factors can bend to little. What it
+//   has of effects belongs to it, and stays.
 #ifndef PHYSPRING_DIAGNOSIS_DIAGNOSIS_BODY_H_
 #define PHYSPRING_DIAGNOSIS_DIAGNOSIS_BODY_H_
 
@@ -25,7 +27,7 @@ struct DiagnosisBody {
   bool controller_velocity = true;
   enum class Kind {
     kOpen,     // begins as stiff as fits best
-    kTrained,  // begins as it was trained, as a smooth body
+    kTrained,  // begins as it was trained, and moves as a smooth body
     kTrusted   // stays about as it was trained: its own parameters hardly move
   } kind = Kind::kOpen;
   std::string label;

@@ -21,16 +21,15 @@ std::vector<Recording> Some(const std::vector<Recording>& recordings) {
 
 }  // namespace
 
-DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out) {
-  if (!held_out.empty()) {
-    return {Some(data.recordings), Some(held_out)};
-  }
+DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out,
+                                     const std::vector<Recording>& before) {
+  if (!held_out.empty()) return {Some(data.recordings), Some(held_out), Some(before)};
   const std::vector<bool> is_held_out = HeldBackRuns(data);
   DiagnosisRecordings all;
   for (std::size_t i = 0; i < data.recordings.size(); ++i) {
     (is_held_out[i] ? all.held_out : all.fit).push_back(data.recordings[i]);
   }
-  return {Some(all.fit), Some(all.held_out)};
+  return {Some(all.fit), Some(all.held_out), Some(before)};
 }
 
 }  // namespace physpring

@@ -14,13 +14,16 @@ namespace physpring {
 struct DiagnosisRecordings {
   std::vector<Recording> fit;
   std::vector<Recording> held_out;  // none: frames of those to fit are held out
+  // Of the object before it changed. They are fitted, too, without the effects that are looked for.
+  std::vector<Recording> before;
 };
 
 // Without recordings to judge by, whole runs of `data` are held out where it has enough of them
 // (HeldBackRuns): a run goes on where the one before it stopped, so parts of it know each other.
 // ChooseRecordings takes at most four on each side, and fewer where they are long: a thousand
-// frames are enough.
-DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out);
+// frames are enough. The same holds for those from before the change.
+DiagnosisRecordings ChooseRecordings(const FitData& data, const std::vector<Recording>& held_out,
+                                     const std::vector<Recording>& before = {});
 
 }  // namespace physpring
 

@@ -75,6 +75,7 @@ FrameTrack TrackOf(const std::vector<SplitRecording>& recordings,
                    const std::vector<std::vector<Points>>& predicted, Use use) {
   FrameTrack all;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (recordings[i].before_change) continue;
     const FrameTrack track = TrackOf(recordings[i].All(), use, predicted[i]);
     all.insert(all.end(), track.begin(), track.end());
   }

@@ -43,7 +43,8 @@ class EffectProblem : public MotionProblem {
   LiftedMotion all_;  // goes up to the last frame in use
 };
 
-// Track errors of predicted positions, one recording after the other.
+// Track errors of predicted positions, one recording after the other, but of none from before a
+// change.
 FrameTrack TrackOf(const std::vector<SplitRecording>& recordings,
                    const std::vector<std::vector<Points>>& predicted, SplitRecording::Use use);
 

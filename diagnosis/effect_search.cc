@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diagnosis/effect_search.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
 #include <span>
 
 #include "diagnosis/acceptance.h"
-#include "trainer/motion/observer.h"
+#include "diagnosis/halving.h"
 
 namespace physpring {
 namespace {
@@ -19,13 +17,6 @@ constexpr double kEarlyTraceGain = 0.2, kTraceGain = 0.1;
 constexpr std::size_t kMostStrong = 6;
 constexpr char kWithoutEffect[] = " without any new effect", kWithLaw[] = " with another law";
 
-// How many steps all fits make, and how many fits go on after that: in all, and with one effect.
-struct Cut {
-  double gain;
-  int steps;
-  std::size_t kept, of_an_effect;
-  Fitting::Care care = Fitting::Care::kRough;
-};
 // In this order: bodies under the highest gain; the best ones as smooth bodies down to the gain of
 // the trace; the trained one down to that; the best one down to none; laws, strong ones on all
 // bodies, and all effects from the start on; all effects with smooth bodies; one fit once more.
@@ -44,58 +35,6 @@ constexpr std::array<Cut, 4> kAgainCuts = {
 using Kind = DiagnosisBody::Kind;
 
 Kind KindOf(const Fitting& fitting, std::size_t body) { return fitting.bodies()[body].kind; }
-
-bool HasFreeForm(const Descent& descent) { return IsFreeForm(descent.hypothesis.NewParameters()); }
-
-// Keeps the best fits by misfit and, beside others, the best one of each free form.
-// Under the highest gain a fit of few steps may be far off yet, so none is hopeless.
-void Keep(const Cut& cut, std::vector<Descent>* fits) {
-  std::stable_sort(fits->begin(), fits->end(),
-                   [](const Descent& p, const Descent& q) { return p.misfit < q.misfit; });
-  const auto best = std::find_if_not(fits->begin(), fits->end(), HasFreeForm);
-  const bool competing = best != fits->end();  // else all have the same effect, maybe a known one
-  const double least = competing ? best->misfit : fits->empty() ? 0 : fits->front().misfit;
-  std::map<std::string, std::size_t> kept;
-  std::size_t others = 0;
-  std::erase_if(*fits, [&](const Descent& fit) {
-    const bool apart = competing && HasFreeForm(fit);
-    if (cut.gain < kObserverGains[0] && IsHopeless(fit.misfit, least)) return true;
-    if (kept[fit.hypothesis.NewEffect()]++ >= (apart ? 1 : cut.of_an_effect)) return true;
-    return !apart && others++ >= cut.kept;
-  });
-}
-
-// Successive halving; the best fit by misfit is the first one after it.
-void Halve(const Fitting& fitting, std::span<const Cut> cuts, const WorkShare& stage,
-           const std::string& of, std::vector<Descent>* fits) {
-  if (fits->empty()) return;
-  double done = 0, all = 0;  // steps, if each cut keeps as many as it may
-  std::size_t count = fits->size();
-  for (const Cut& cut : cuts) {
-    all += static_cast<double>(count) * cut.steps;
-    count = std::min(count, cut.kept);
-  }
-  for (const Cut& cut : cuts) {
-    const int steps = static_cast<int>(fits->size()) * cut.steps;
-    fitting.journal().Stage(
-        stage.Part(done / all, std::min(1.0, (done + steps) / all)), steps,
-        fmt::format("refitting {} models{}, gain {}", fits->size(), of, cut.gain));
-    done += steps;
-    for (Descent& fit : *fits) {
-      fit.damping = 1e-2;
-      fit.converged = false;
-    }
-    fitting.Descend(cut.gain, cut.care, cut.steps, fits);
-    Keep(cut, fits);
-  }
-}
-
-std::vector<Verdict> JudgeAndSort(const Fitting& fitting, const std::vector<Descent>& fits) {
-  std::vector<Verdict> verdicts = fitting.JudgeAll(fits);
-  std::stable_sort(verdicts.begin(), verdicts.end(),
-                   [](const Verdict& p, const Verdict& q) { return p.track.held < q.track.held; });
-  return verdicts;
-}
 
 // The fits with smooth bodies; those of bodies that hardly move as they are.
 std::vector<Descent> SmoothAll(const Fitting& fitting, std::vector<Descent> fits,

@@ -9,34 +9,16 @@
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/effect_search.h"
+#include "diagnosis/inquiry.h"
+#include "diagnosis/law_search.h"
 #include "diagnosis/noise_floor.h"
 #include "twin/effects/registry.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kDraws = 2000;
-constexpr double kBlock = 0.2;  // s, a block of the bootstrap
-
-// The part of the work that is done after the refits without an effect.
-constexpr double kDeclaredPart = 0.2;
-
-// What stays the same in all rounds.
-struct Inquiry {
-  const Fitting& fitting;
-  double noise_floor;
-  const DiagnosisOptions& options;
-  std::vector<const Effect*> effects;  // those that may be missing
-
-  BootstrapResult Gain(const Verdict& without, const Verdict& with) const {
-    return GainOf(fitting, options.seed, without.held, with.held);
-  }
-  // The threshold for the one that is chosen among so many refits.
-  Threshold ThresholdFor(std::size_t tried) const {
-    return {noise_floor, options.false_alarm, options.least_gain, options.least_noise,
-            static_cast<int>(tried)};
-  }
-};
+// The parts of the work that are done after the refits without an effect, and after all rounds.
+constexpr double kDeclaredPart = 0.2, kRoundsPart = 0.9;
 
 // What is known before a round.
 struct Standing {
@@ -59,28 +41,6 @@ struct Attempt {
   const Verdict& chosen() const { return verdicts[best]; }
 };
 
-// Whether frames to judge by lie between frames to fit.
-bool IsJudgedInBetween(const SplitRecording& split) {
-  const auto held = std::find(split.use.begin(), split.use.end(), SplitRecording::Use::kHeld);
-  return std::find(held, split.use.end(), SplitRecording::Use::kFit) != split.use.end();
-}
-
-std::vector<const Effect*> EffectsFor(const std::vector<SplitRecording>& splits,
-                                      const SpringMassSystem& body) {
-  const bool ground = splits[0].recording->ground.has_value();
-  const BodyTraits traits = {ground, IsSolid(body), body.order.size() > 0};
-  const bool in_between = std::any_of(splits.begin(), splits.end(), IsJudgedInBetween);
-  std::vector<const Effect*> effects;
-  for (const Effect* effect : AllEffects()) {
-    const bool has_it =
-        std::any_of(body.effects.begin(), body.effects.end(),
-                    [&](const EffectValues& own) { return own.name == effect->name(); });
-    if (has_it || !effect->MayBeMissing(traits)) continue;
-    if (CanBeJudged(effect->value_count(), in_between)) effects.push_back(effect);
-  }
-  return effects;
-}
-
 std::string NameOf(const Verdict& verdict) { return verdict.descent.hypothesis.NewEffect(); }
 
 Eigen::Index NewParametersOf(const Verdict& verdict) {
@@ -92,17 +52,12 @@ Verdict Better(const Verdict& verdict, const std::optional<Verdict>& offered) {
   return offered && offered->track.held < verdict.track.held ? *offered : verdict;
 }
 
-int BlockOf(const Fitting& fitting) {
-  return static_cast<int>(std::ceil(kBlock * fitting.recordings()[0].recording->fps));
-}
-
 std::size_t ChooseAmong(const Inquiry& inquiry, const std::vector<Verdict>& verdicts) {
   std::vector<Scored> scored;
   for (const Verdict& v : verdicts) {
     scored.push_back({v.descent.hypothesis.ParameterCount(), v.track.held, v.held});
   }
-  return ChooseSimplest(scored, inquiry.noise_floor, BlockOf(inquiry.fitting),
-                        inquiry.options.seed);
+  return ChooseSimplest(scored, inquiry.noise_floor, inquiry.Block(), inquiry.options.seed);
 }
 
 // The model without a new effect, with those that are known; nothing if it diverges. Where the body
@@ -287,15 +242,15 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
                                     const DiagnosisOptions& options, const WorkShare& share,
                                     const std::vector<EffectValues>& known,
                                     const std::optional<Verdict>& trained) {
-  const Inquiry inquiry{fitting, noise_floor, options,
-                        EffectsFor(fitting.recordings(), fitting.bodies()[0].base)};
+  const Inquiry inquiry = InquiryOf(fitting, noise_floor, options);
   const auto declared = FitDeclared(fitting, noise_floor, known, share.Part(0, kDeclaredPart));
   if (!declared) return {};
   Standing standing = *declared;
   standing.accepted = Better(standing.accepted, trained);
   Findings findings;
   for (int round = 0; round < options.most_effects; ++round) {
-    const WorkShare stage = ShareOf(share.Part(kDeclaredPart, 1), round, options.most_effects);
+    const WorkShare stage =
+        ShareOf(share.Part(kDeclaredPart, kRoundsPart), round, options.most_effects);
     const Attempt attempt = LookForOneMore(inquiry, standing, round, stage);
     if (attempt.rival_won) {
       findings.rankings.back() = WithoutAlike(findings.rankings.back(), NameOf(standing.accepted));
@@ -309,12 +264,15 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
     standing = {{{}, chosen.descent}, chosen, RivalOf(inquiry, attempt)};
   }
   findings.accepted = standing.accepted;
+  if (IsUnexplained(standing.accepted.track.held, noise_floor)) {
+    const bool refitted = standing.accepted.descent.x.size() > 0;
+    const Descent& from = refitted ? standing.accepted.descent : standing.bodies.fitted;
+    const auto law = FindLaw(inquiry, standing.accepted, from, share.Part(kRoundsPart, 1));
+    if (law) findings.accepted = law->verdict;
+    if (law) findings.law_terms = law->terms;
+  }
+  findings.gain = inquiry.Gain(findings.before, findings.accepted);
   return findings;
-}
-
-BootstrapResult GainOf(const Fitting& fitting, std::uint64_t seed, const FrameTrack& without,
-                       const FrameTrack& with) {
-  return BlockBootstrap(Difference(without, with), BlockOf(fitting), kDraws, seed);
 }
 
 }  // namespace physpring

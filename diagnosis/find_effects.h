@@ -16,7 +16,9 @@ namespace physpring {
 struct Findings {
   Verdict before, accepted;             // without any new effect, and with those that were accepted
   std::vector<EffectRanking> rankings;  // one for each round
+  BootstrapResult gain;                 // of all that were accepted
   std::string refusal;  // why the best effect of the last round is not added; empty: there was none
+  int law_terms = 0;    // so many of the last effects that were accepted are terms of a law
 };
 
 // `known`: effects that the twin has besides the body's own. `trained`: the twin as it came, taken
@@ -26,10 +28,6 @@ std::optional<Findings> FindEffects(const Fitting& fitting, double noise_floor,
                                     const DiagnosisOptions& options, const WorkShare& share,
                                     const std::vector<EffectValues>& known,
                                     const std::optional<Verdict>& trained);
-
-// How much smaller the errors of held-out frames are with the effects, by a paired block bootstrap.
-BootstrapResult GainOf(const Fitting& fitting, std::uint64_t seed, const FrameTrack& without,
-                       const FrameTrack& with);
 
 }  // namespace physpring
 

@@ -23,8 +23,8 @@ constexpr double kMostCommonRate = 5000;  // sub-steps a second at most
 constexpr int kUpdates = 4;               // of the Jacobian of a smooth body, in a step
 // An exact fit ends where a step gains less than this part.
 constexpr double kExactTolerance = 5e-4;
-// A trusted body may take so many times the sub-steps a second that it came with.
-constexpr double kTrustedRoom = 1.25;
+// A body as it was trained may take so many times the sub-steps a second that it came with.
+constexpr double kTrainedRoom = 1.25;
 
 // The state of either method as one vector, and back.
 template <class State>
@@ -61,15 +61,22 @@ PieceKey KeyOf(const std::string& kind, const Hypothesis& hypothesis) {
 }
 
 Fitting::Fitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings,
-                 int threads, Journal* journal)
+                 int threads, Journal* journal, std::size_t lasting_effects)
     : bodies_(std::move(bodies)),
       recordings_(std::move(recordings)),
       threads_(threads),
-      journal_(journal) {
+      journal_(journal),
+      lasting_effects_(lasting_effects) {
   for (const SplitRecording& split : recordings_) followed_.push_back(DropHeldOut(split));
 }
 
 double Fitting::difference() const { return FactorDifference(*recordings_[0].recording); }
+
+double Fitting::MostRate(std::size_t body) const {
+  if (bodies_[body].kind == DiagnosisBody::Kind::kOpen) return kMostCommonRate;
+  const double own = DiagnosisRate(bodies_[body].base, recordings_[0].recording->fps);
+  return std::max(kMostCommonRate, kTrainedRoom * own);
+}
 
 SpringMassSystem Fitting::Base(std::size_t body, double start_substeps) const {
   SpringMassSystem base = bodies_[body].base;
@@ -85,7 +92,7 @@ Descent Fitting::Begin(std::size_t body, const std::vector<EffectValues>& effect
     Descent descent{{body, effects, substeps}, {}};
     const EffectModel model = Model(descent.hypothesis);
     descent.x = Eigen::VectorXd::Zero(model.size());
-    EffectProblem problem = MakeProblem(model, bodies_[body], kObserverGains[0], Care::kRough);
+    EffectProblem problem = MakeProblem(model, body, kObserverGains[0], Care::kRough);
     if (!problem.FixSubsteps(descent.x)) continue;
     const auto r = problem.Residuals(descent.x);
     if (!r || r->squaredNorm() >= best.misfit) continue;
@@ -105,7 +112,7 @@ Descent Fitting::Smooth(const Descent& fit, SmoothBody::Numbers numbers) const {
   smooth.hypothesis.effects.assign(added, start.effects.end());
   start.effects.erase(added, start.effects.end());
   start.dashpot = start.stiffness * (start.dashpot.sum() / start.stiffness.sum());  // one loss time
-  SmoothBody::Options options{kMostCommonRate};
+  SmoothBody::Options options{MostRate(fit.hypothesis.body)};
   options.numbers = numbers;
   options.class_loss_times = numbers == SmoothBody::Numbers::kAll;
   const SmoothBody body(start, *recordings_[0].recording, SpringNet(), options);
@@ -130,19 +137,16 @@ EffectModel Fitting::Model(const Hypothesis& hypothesis) const {
 }
 
 EffectProblem Fitting::Problem(const Hypothesis& hypothesis, double gain, Care care) const {
-  return MakeProblem(Model(hypothesis), bodies_[hypothesis.body], gain, care);
+  return MakeProblem(Model(hypothesis), hypothesis.body, gain, care);
 }
 
-EffectProblem Fitting::MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
+EffectProblem Fitting::MakeProblem(const EffectModel& model, std::size_t body, double gain,
                                    Care care) const {
   EffectProblem::Options options;
+  options.lasting_effects = lasting_effects_;
   options.least_rate = kLeastDiagnosisRate;
-  options.most_rate = kMostCommonRate;
-  if (body.kind == DiagnosisBody::Kind::kTrusted) {
-    const double own = DiagnosisRate(body.base, recordings_[0].recording->fps);
-    options.most_rate = std::max(options.most_rate, kTrustedRoom * own);
-  }
-  options.rollout.controller_velocity = body.controller_velocity;
+  options.most_rate = MostRate(body);
+  options.rollout.controller_velocity = bodies_[body].controller_velocity;
   options.rollout.single_precision = care == Care::kRough;
   options.difference =
       DirectionDifference(*recordings_[0].recording, options.rollout.single_precision);

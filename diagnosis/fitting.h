@@ -24,15 +24,17 @@ PieceKey KeyOf(const std::string& kind, const Hypothesis& hypothesis);
 
 class Fitting {
  public:
-  // `journal` (it must outlive this) keeps what is worked out; without one nothing is kept.
+  // `journal` (it must outlive this) keeps what is worked out; without one nothing is kept. In
+  // recordings from before a change only the first `lasting_effects` act.
   Fitting(std::vector<DiagnosisBody> bodies, std::vector<SplitRecording> recordings, int threads,
-          Journal* journal = nullptr);
+          Journal* journal = nullptr, std::size_t lasting_effects = 0);
   Fitting(const Fitting&) = delete;
   Fitting& operator=(const Fitting&) = delete;
 
   const std::vector<DiagnosisBody>& bodies() const { return bodies_; }
   const std::vector<SplitRecording>& recordings() const { return recordings_; }
   int threads() const { return threads_; }
+  std::size_t lasting_effects() const { return lasting_effects_; }
   Journal& journal() const { return journal_ ? *journal_ : *own_journal_; }
   double difference() const;  // step of forward differences; longer where contacts jump
 
@@ -64,8 +66,9 @@ class Fitting {
   // The verdict on the system at x, which comes from that descent.
   std::optional<Verdict> JudgeAt(EffectProblem* problem, const Eigen::VectorXd& x,
                                  const Descent& descent) const;
-  EffectProblem MakeProblem(const EffectModel& model, const DiagnosisBody& body, double gain,
+  EffectProblem MakeProblem(const EffectModel& model, std::size_t body, double gain,
                             Care care) const;
+  double MostRate(std::size_t body) const;  // sub-steps a second that the body may take
   bool DescendOne(double gain, Care care, int steps, int threads, Descent* descent) const;
 
   std::vector<DiagnosisBody> bodies_;
@@ -73,6 +76,7 @@ class Fitting {
   std::vector<SplitRecording> followed_;  // the same with the fit frames only
   int threads_;
   Journal* journal_;
+  std::size_t lasting_effects_;
   std::unique_ptr<Journal> own_journal_ = std::make_unique<Journal>();
 };
 

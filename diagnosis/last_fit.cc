@@ -25,7 +25,7 @@ std::optional<Verdict> FitAllFrames(const Fitting& fitting, const WorkShare& sha
                      "as chosen"};
   body.base.effects = own;
   const Fitting fitting_all(smooth ? fitting.bodies() : std::vector<DiagnosisBody>{body}, all,
-                            fitting.threads(), &fitting.journal());
+                            fitting.threads(), &fitting.journal(), fitting.lasting_effects());
   std::vector<Descent> descents = {
       smooth ? fitting_all.Smooth(chosen.descent, SmoothBody::Numbers::kAll)
              : fitting_all.Begin(0, added)};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/diagnosis/effect_words.h"
 #include "report/diagnosis_text.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
@@ -38,6 +39,9 @@ Json EffectList(const Diagnosis& diagnosis) {
       errors[parameter.key] = one ? of_error[0] : of_error;
       shared[parameter.key] = one ? of_shared[0] : of_shared;
       unknown[parameter.key] = one ? of_unknown[0] : of_unknown;
+    }
+    if (diagnosis.effects[n].name == "custom") {
+      list[n]["formula"] = PictureOf(diagnosis, diagnosis.effects[n]).lacks;
     }
     list[n]["standard_errors"] = errors;
     list[n]["shared"] = shared;
@@ -121,6 +125,7 @@ std::string FormatDiagnosisJson(const Diagnosis& diagnosis) {
       {"recordings",
        {{"fit", diagnosis.fitted},
         {"heldout", diagnosis.judged},
+        {"before", diagnosis.before_change},
         {"resting_frames", diagnosis.resting_frames}}},
       {"noise_floor", diagnosis.noise_floor},
       {"motionless", Number(diagnosis.motionless)},

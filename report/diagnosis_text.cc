@@ -83,6 +83,8 @@ std::string DescribeVerdict(const Diagnosis& diagnosis) {
   std::string verdict = diagnosis.effects.empty() ? "no effect was found" : "";
   for (const EffectValues& effect : diagnosis.effects) {
     verdict += (verdict.empty() ? "the model lacks " : ", ") + effect.name;
+    if (effect.name == "custom")
+      verdict += fmt::format(" ({})", PictureOf(diagnosis, effect).lacks);
   }
   if (!diagnosis.unexplained) return verdict;
   const Unexplained& left = *diagnosis.unexplained;
@@ -123,6 +125,10 @@ std::string DescribeResidual(const Diagnosis& diagnosis) {
 std::string DescribeRecordings(const Diagnosis& diagnosis) {
   std::string text = fmt::format("fitted to {}; judged by {}", Join(diagnosis.fitted, "nothing"),
                                  Join(diagnosis.judged, "frames that were not fitted"));
+  if (!diagnosis.before_change.empty()) {
+    text +=
+        fmt::format("; fitted, too, as before the change: {}", Join(diagnosis.before_change, ""));
+  }
   if (diagnosis.resting_frames > 0) {
     text += fmt::format("; without the last {} frames, in which nothing moves any more",
                         diagnosis.resting_frames);
@@ -136,6 +142,8 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
                       InMillimetres(diagnosis.noise_floor), InMillimetres(diagnosis.motionless));
   text += fmt::format("before, refitted without new effects: fit {}, held out {}\n",
                       InMillimetres(diagnosis.before.fit), InMillimetres(diagnosis.before.held));
+  const std::size_t listed =
+      diagnosis.effects.size() - static_cast<std::size_t>(diagnosis.law_terms);
   for (std::size_t i = 0; i < diagnosis.rankings.size(); ++i) {
     for (const EffectCandidate& candidate : diagnosis.rankings[i]) {
       if (!candidate.refit) continue;
@@ -145,7 +153,7 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
           candidate.name, 100 * candidate.score, InMillimetres(candidate.refit->held),
           InMillimetres(candidate.without), DescribeGain(candidate.gain), candidate.gain.p);
     }
-    if (i < diagnosis.effects.size()) {
+    if (i < listed) {
       text += fmt::format("added: {} ({})\n", diagnosis.effects[i].name,
                           DescribeParameters(diagnosis, i));
     } else if (!diagnosis.rankings[i].empty()) {
@@ -153,6 +161,10 @@ std::string FormatDiagnosisText(const Diagnosis& diagnosis) {
                   ? "added: none, since none helps on the held-out frames\n"
                   : fmt::format("added: none; the best is {}\n", diagnosis.refusal);
     }
+  }
+  for (std::size_t i = listed; i < diagnosis.effects.size(); ++i) {
+    text += fmt::format("added: a term of a law that is no effect of the list: {}\n",
+                        DescribeEffect(diagnosis, i));
   }
   if (!diagnosis.effects.empty()) text += DescribeCertainty(diagnosis) + "\n";
   const std::string confounded = DescribeConfounded(diagnosis);

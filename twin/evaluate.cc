@@ -46,10 +46,9 @@ RecordingResult Evaluate(const Twin& twin, const Recording& recording,
                          const PredictOptions& options) {
   ExpectSameObject(twin, recording);
   RecordingResult result;
-  for (const TrainedOn& trained : twin.trained_on) {
-    if (trained.hash != recording.hash) continue;
+  if (const TrainedOn* trained = twin.TrainingOn(recording.hash)) {
     result.trained_on = true;
-    result.first_predicted = std::clamp(trained.train_frames, 1, recording.frame_count());
+    result.first_predicted = std::clamp(trained->train_frames, 1, recording.frame_count());
   }
   for (int level = 0; level < static_cast<int>(twin.levels.size()); ++level) {
     result.levels.push_back(EvaluateLevel(twin, level, recording, options));

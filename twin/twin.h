@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_TWIN_TWIN_H_
 #define PHYSPRING_TWIN_TWIN_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -56,6 +57,14 @@ struct Twin {
   std::vector<TrainedOn> trained_on;
   std::string options_json = "{}";  // the options it was trained with, a compact JSON object
   std::uint64_t seed = 0;
+
+  // What it says of its training on the recording of that hash; null if it was not trained on it.
+  const TrainedOn* TrainingOn(const std::string& hash) const {
+    const auto found = std::find_if(
+        trained_on.begin(), trained_on.end(),
+        [&](const TrainedOn& trained) { return !hash.empty() && trained.hash == hash; });
+    return found == trained_on.end() ? nullptr : &*found;
+  }
 
   // Optimiser state, counters and the like, under the names their owner chose: "train/NAME".
   std::map<std::string, NpzArray> training_state;

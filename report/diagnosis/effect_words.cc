@@ -56,7 +56,8 @@ std::vector<ValueRange> RangesOf(const Diagnosis& diagnosis, std::size_t effect)
   for (const EffectParameter& parameter : GetEffect(found.name).parameters()) {
     for (int k = 0; k < parameter.count; ++k, ++at) {
       std::optional<ValueCertainty> certainty;
-      if (at < diagnosis.certainty.size()) certainty = diagnosis.certainty[at];
+      const bool moves = parameter.scale > 0;  // else it says what the effect is
+      if (moves && at < diagnosis.certainty.size()) certainty = diagnosis.certainty[at];
       const auto i = static_cast<Eigen::Index>(ranges.size());
       ranges.push_back(RangeOf(parameter, found.values[i], certainty));
       if (parameter.count > 1) ranges.back().label += fmt::format(" {}", k + 1);

@@ -91,6 +91,45 @@ TEST_F(Diagnose, IsNotJudgedByWhatItFits) {
   }
 }
 
+// A twin that was trained on a recording from before its object changed.
+class DiagnoseChange : public Diagnose {
+ protected:
+  DiagnoseChange() {
+    Twin twin = SmallTwin(1);
+    WriteRecording(RecordingOfMotion(twin, 11), clean_);
+    twin.trained_on = {{"clean", HashFile(clean_), 11}};
+    WriteTwin(twin, twin_);
+  }
+
+  // The names of the recordings from before the change, as the report gives them.
+  nlohmann::json Before(const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"diagnose", twin_, swing_,  "--heldout",
+                                      held_,      "-o",  output_, "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = RunProgram(words);
+    EXPECT_EQ(result.status, 0) << result.errors;
+    return nlohmann::json::parse(ReadFile(output_ + "/report.json"))["recordings"]["before"];
+  }
+
+  std::string clean_ = folder_.File("clean.npz");
+};
+
+TEST_F(DiagnoseChange, FitsWhatTheTwinWasTrainedOnIfItIsThere) {
+  EXPECT_EQ(Before({}), nlohmann::json({"clean"}));
+  EXPECT_EQ(Before({"--no-before"}), nlohmann::json::array());
+  WriteRecording(RecordingOfMotion(SmallTwin(1), 9), clean_);  // another one of that name
+  EXPECT_EQ(Before({}), nlohmann::json::array());
+  EXPECT_EQ(Before({"--before", clean_}), nlohmann::json({"clean"}));
+}
+
+TEST_F(DiagnoseChange, DoesNotTakeARecordingAsBeforeAndAfterTheChange) {
+  for (const std::string& both : {swing_, held_}) {
+    EXPECT_TRUE(FailsWith(RunProgram({"diagnose", twin_, swing_, "--heldout", held_, "--before",
+                                      both, "-o", output_}),
+                          both + ": is among the recordings to diagnose, too"));
+  }
+}
+
 TEST_F(Diagnose, NeedsFramesToFitAndOthersToJudgeBy) {
   const std::string two = folder_.File("two.npz");
   Recording recording = RecordingOfMotion(SmallTwin(1), 3);

@@ -79,6 +79,24 @@ void MoveByMujoco(const SpringMassSystem& system, const Eigen::Vector3d& gravity
   }
 }
 
+// A twin that was trained on the recording.
+Twin TwinOf(const SpringMassSystem& system, const Recording& recording) {
+  Twin twin;
+  twin.levels.push_back({system, {}, static_cast<int>(kFps) * kSteps});
+  twin.points = recording.point_count();
+  twin.fps = kFps;
+  twin.controller_velocity = false;
+  twin.trained_on.push_back({recording.name, recording.hash, recording.train_frames});
+  return twin;
+}
+
+DiagnosisOptions OneEffect() {
+  DiagnosisOptions options;
+  options.threads = 2;
+  options.most_effects = 1;
+  return options;
+}
+
 // The diagnosis of a twin that was trained on the first of two motions, judged by the other or by
 // frames of the same.
 enum class JudgedBy { kOtherMotion, kOtherFrames };
@@ -88,17 +106,9 @@ Diagnosis DiagnoseSheet(const Eigen::Vector3d& gravity, JudgedBy judge = JudgedB
   MoveByMujoco(system, gravity, &fit);
   MoveByMujoco(system, gravity, &other);
   other.hash = "another";
-  Twin twin;
-  twin.levels.push_back({system, {}, static_cast<int>(kFps) * kSteps});
-  twin.points = fit.point_count();
-  twin.fps = kFps;
-  twin.controller_velocity = false;
-  twin.trained_on.push_back({fit.name, fit.hash, fit.train_frames});
-  DiagnosisOptions options;
-  options.threads = 2;
-  options.most_effects = 1;
-  if (judge == JudgedBy::kOtherFrames) return Diagnose(twin, {fit}, {}, options);
-  return Diagnose(twin, {fit}, {other}, options);
+  const Twin twin = TwinOf(system, fit);
+  if (judge == JudgedBy::kOtherFrames) return Diagnose(twin, {.fit = {fit}}, OneEffect());
+  return Diagnose(twin, {.fit = {fit}, .held_out = {other}}, OneEffect());
 }
 
 Eigen::Vector3d TiltedGravity(double tilt) {
@@ -149,6 +159,26 @@ TEST(Diagnosis, EndsWithAFitToAllFrames) {
   EXPECT_LT(*diagnosis.all_frames, 1.2 * diagnosis.noise_floor);
   EXPECT_EQ(diagnosis.twin.levels[0].system.effects.back().values, diagnosis.effects[0].values);
   EXPECT_EQ(diagnosis.twin.trained_on[0].train_frames, kFrames);
+}
+
+// The twin was trained before gravity turned, and not well.
+TEST(Diagnosis, FindsWhatHasChangedOfATwinThatIsTooSoft) {
+  constexpr double kTilt = 0.12, kSoft = 0.6;
+  Recording before = HungSheet(2), after = HungSheet(0);
+  const SpringMassSystem truth = SheetSystem(before);
+  MoveByMujoco(truth, TiltedGravity(0), &before);
+  MoveByMujoco(truth, TiltedGravity(kTilt), &after);
+  after.hash = "another";
+  Twin twin = TwinOf(truth, before);
+  twin.levels[0].system.stiffness *= kSoft;
+  const Diagnosis diagnosis = Diagnose(twin, {.fit = {after}, .before = {before}}, OneEffect());
+  ASSERT_EQ(diagnosis.effects.size(), 1U) << diagnosis.refusal;
+  EXPECT_EQ(diagnosis.effects[0].name, "gravity_direction");
+  EXPECT_NEAR(diagnosis.effects[0].values[0], kTilt, 0.1 * kTilt);
+  EXPECT_LT(diagnosis.after.held, 1.2 * diagnosis.noise_floor);
+  EXPECT_EQ(diagnosis.before_change, std::vector<std::string>{"sheet"});
+  const SpringMassSystem& found = diagnosis.twin.levels[0].system;
+  EXPECT_NEAR(found.stiffness.mean() / truth.stiffness.mean(), 1, 0.1);
 }
 
 TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {

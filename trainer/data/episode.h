@@ -19,6 +19,7 @@ struct Episode {
   const Recording* recording;
   int frames;  // >= 2; with fewer there is nothing to predict
   const std::vector<FrameUse>* use = nullptr;
+  bool before_change = false;  // of the object before it got the effects that are looked for
 
   FrameUse UseOf(int frame) const {
     return use ? (*use)[static_cast<std::size_t>(frame)] : FrameUse::kFit;
@@ -30,13 +31,14 @@ struct SplitRecording {
   using Use = FrameUse;
   const Recording* recording;
   std::vector<Use> use;
+  bool before_change = false;  // as of an episode
 
   int last(Use wanted) const;  // the last frame of that use + 1; 0 if there is none
   int seen(Use wanted) const;  // how many frames of that use see a point
 
   // The episode of all frames, or of the first ones. *this must outlive it.
   Episode All() const { return First(static_cast<int>(use.size())); }
-  Episode First(int frames) const { return {recording, frames, &use}; }
+  Episode First(int frames) const { return {recording, frames, &use, before_change}; }
 };
 
 // The recording with all frames but the start for one use.

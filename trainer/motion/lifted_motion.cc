@@ -86,6 +86,14 @@ RolloutOptions LiftedMotion::RolloutOf(int e, const Substeps& substeps) const {
   return options;
 }
 
+SpringMassSystem LiftedMotion::SystemIn(int e, SpringMassSystem system) const {
+  std::vector<EffectValues>& effects = system.effects;
+  if (episodes_[e].before_change) {
+    effects.resize(std::min(options_.lasting_effects, effects.size()));
+  }
+  return system;
+}
+
 Episode LiftedMotion::EpisodeOfNodes(int e) const {
   const Episode& episode = episodes_[e];
   const Recording* recording = carried_.empty() ? episode.recording : &carried_[e];
@@ -103,7 +111,7 @@ std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMass
                                                          const Substeps& substeps) const {
   Motion motion;
   if (episodes_[e].frames < 2) return motion;
-  motion.rollout = RollOut(system, EpisodeOfNodes(e), RolloutOf(e, substeps));
+  motion.rollout = RollOut(SystemIn(e, system), EpisodeOfNodes(e), RolloutOf(e, substeps));
   if (motion.rollout->diverged()) return {};
   if (!lifts_.empty()) motion.lifted = Lifted(e, motion.rollout->positions());
   return motion;
@@ -113,7 +121,9 @@ std::vector<std::optional<std::vector<Points>>> LiftedMotion::RunSideBySide(
     int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const {
   using Particles = std::vector<Points>;
   if (episodes_[e].frames < 2) return {systems.size(), Particles()};
-  auto all = RollOutSideBySide(systems, EpisodeOfNodes(e), RolloutOf(e, substeps));
+  std::vector<SpringMassSystem> acting;
+  for (const SpringMassSystem& system : systems) acting.push_back(SystemIn(e, system));
+  auto all = RollOutSideBySide(acting, EpisodeOfNodes(e), RolloutOf(e, substeps));
   if (lifts_.empty()) return all;
   for (std::optional<Particles>& particles : all) {
     if (particles) particles = Lifted(e, *particles);

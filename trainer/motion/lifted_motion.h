@@ -27,6 +27,7 @@ class LiftedMotion {
     double least_rate = 0;        // sub-steps a second, at least ...
     // ... and at most; a stiffer system cannot be rolled out.
     double most_rate = std::numeric_limits<double>::infinity();
+    std::size_t lasting_effects = 0;  // only the first so many act in episodes before a change
     int threads = 1;
   };
 
@@ -80,6 +81,8 @@ class LiftedMotion {
 
  private:
   RolloutOptions RolloutOf(int e, const Substeps& substeps) const;
+  // The system without those effects that do not act in the episode.
+  SpringMassSystem SystemIn(int e, SpringMassSystem system) const;
   Episode EpisodeOfNodes(int e) const;
   std::vector<Points> Lifted(int e, const std::vector<Points>& positions) const;
 

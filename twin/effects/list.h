@@ -26,6 +26,7 @@
   BOTH(GroundContact)                        \
   BOTH(StiffnessDrift)                       \
   BOTH(UniformForce)                         \
+  TWIN(Custom)                               \
   SCENE(MovingAttraction)
 
 // For those that one of the two folders does not have.

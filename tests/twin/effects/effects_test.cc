@@ -48,6 +48,7 @@ const std::map<std::string, Case>& Cases() {
       {"control_latency", {{0.013}, kSmooth}},
       {"ground_contact", {{0.1, 0.1}, kKinked}},
       {"stiffness_drift", {{1.5}, kSmooth}},
+      {"custom", {{1, 3, 20, 300, -100, 200, 50, 150, -100}, kSmooth}},
   };
   return kCases;
 }
@@ -109,6 +110,7 @@ TEST_P(Effects, HasTheDerivativesThatDifferencesShow) {
     const bool logarithmic = parameter.spacing == EffectParameter::Spacing::kLogarithmic;
     for (int n = 0; n < parameter.count; ++n, ++i) {
       const double scale = logarithmic ? values[i] : parameter.scale;
+      if (scale == 0) continue;  // says what the effect is, and does not move
       variables.push_back(
           {parameter.key, &values[i], test.step * scale, gradient.system.effects[0][i]});
     }
