@@ -81,8 +81,10 @@ std::vector<Recording> RecordingsBefore(const DiagnoseArguments& arguments, cons
       if (twin.TrainingOn(recording.hash)) return {};
     }
   }
-  std::vector<std::string> files = arguments.recordings;
-  files.push_back(arguments.twin);
+  std::vector<std::string> files = {arguments.twin};
+  for (const auto* list : {&arguments.recordings, &arguments.held_out}) {
+    files.insert(files.end(), list->begin(), list->end());
+  }
   return FindTrainingRecordings(twin, files);
 }
 
@@ -119,16 +121,19 @@ void WarnOfCoarseLevels(const Twin& twin) {
 }
 
 // Makes the folder before the work, and checks that all outputs can be written.
-Outputs MakeOutputs(const DiagnoseArguments& arguments, const std::vector<RecordingEntry>& fit,
-                    const std::vector<RecordingEntry>& held_out) {
+Outputs MakeOutputs(const DiagnoseArguments& arguments) {
   const std::filesystem::path folder(arguments.output);
   MakeFolder(arguments.output);
   const Outputs outputs{(folder / "report.json").string(), (folder / "report.html").string(),
                         (folder / std::filesystem::path(arguments.twin).filename()).string(),
                         (folder / "checkpoint.npz").string()};
   std::vector<std::string> inputs{arguments.twin};
-  for (const RecordingEntry& entry : fit) inputs.push_back(entry.path);
-  for (const RecordingEntry& entry : held_out) inputs.push_back(entry.path);
+  const auto add = [&](const std::vector<std::string>& list, Role role) {
+    for (const RecordingEntry& entry : ListRecordings(list, role)) inputs.push_back(entry.path);
+  };
+  add(arguments.recordings, Role::kFit);
+  add(arguments.held_out, Role::kHeldout);
+  add(arguments.before, Role::kFit);
   ExpectOutputs({outputs.report, outputs.page, outputs.twin, outputs.checkpoint, arguments.json},
                 inputs);
   return outputs;
@@ -189,7 +194,7 @@ void Run(const DiagnoseArguments& arguments) {
     PrintRemarks(*recordings);
   }
   const DiagnosisRecordings chosen = ChooseRecordings(data, judged, before);
-  const Outputs outputs = MakeOutputs(arguments, fit, held_out);
+  const Outputs outputs = MakeOutputs(arguments);
   const OutputLock lock(arguments.output);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen,
                                        arguments.options);

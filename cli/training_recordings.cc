@@ -24,7 +24,9 @@ std::optional<Recording> ReadIfSame(const fs::path& path, const TrainedOn& train
 std::vector<Recording> FindTrainingRecordings(const Twin& twin,
                                               const std::vector<std::string>& files) {
   std::set<fs::path> folders;
-  for (const std::string& file : files) folders.insert(fs::path(file).parent_path());
+  for (const std::string& file : files) {
+    folders.insert(fs::is_directory(file) ? fs::path(file) : fs::path(file).parent_path());
+  }
   std::vector<Recording> found;
   for (const TrainedOn& trained : twin.trained_on) {
     for (const fs::path& folder : folders) {

@@ -12,8 +12,8 @@
 
 namespace physpring {
 
-// Those that lie in a folder of one of `files`, in the twin's order. A file of the same name and
-// another content is none of them.
+// Those that lie in the folder of one of `files`, or in one that is a folder, in the twin's order.
+// A file of the same name and another content is none of them.
 std::vector<Recording> FindTrainingRecordings(const Twin& twin,
                                               const std::vector<std::string>& files);
 

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -20,10 +21,9 @@ constexpr int kMostTerms = 3;
 constexpr std::size_t kMostFits = 5;      // with one more term
 constexpr double kHalfOfTheError = 0.75;  // half of an error are three quarters of its square
 constexpr double kTermGain = 0.1;
-// Of fits with one more term; without an observer no more than three go on.
-constexpr std::array<Cut, 1> kEarlyTermCuts = {{{kTermGain, 4, kMostFits, kMostFits}}};
-constexpr std::array<Cut, 1> kTermCuts = {{{0, 15, 3, 3}}};
-constexpr std::array<Cut, 1> kFewerCuts = {{{0, 15, 1, 1}}};  // with a term less
+// With one more term; the best once more, and with a term less.
+constexpr std::array<Cut, 2> kTermCuts = {{{kTermGain, 4, 3, 3}, {0, 15, 1, 1}}};
+constexpr std::array<Cut, 1> kOnceMoreCuts = {{{0, 15, 1, 1}}};
 constexpr double kLeastScore = 0.02;  // part of the squared misfit that a term may take, at least
 constexpr double kFewestFrames = 8;   // in a period
 
@@ -93,16 +93,36 @@ std::vector<Term> LibraryFor(const Recording& recording) {
   return terms;
 }
 
-// Whether a term of the fit is a slow part of a wave, which stands for another course.
-bool HasSlowTerm(const Fitting& fitting, const Descent& fit) {
+// Whether a wave is so slow that it stands for another course.
+bool IsTooSlow(const Fitting& fitting, const EffectValues& effect) {
   const double slowest = 0.5 * SlowestRate(*fitting.recordings()[0].recording);
-  const std::vector<EffectValues> effects = fitting.Model(fit.hypothesis).Apply(fit.x).effects;
-  return std::any_of(effects.begin(), effects.end(), [&](const EffectValues& effect) {
-    return effect.name == "custom" && effect.values[1] == 3 && effect.values[2] < slowest;
-  });
+  return effect.name == "custom" && effect.values[1] == 3 && effect.values[2] < slowest;
 }
 
-struct Scored {
+// The fit with constant terms in place of waves that are too slow: what they degenerate to.
+Descent WithoutSlowWaves(const Fitting& fitting, Descent fit) {
+  const double middle = 0.5 * fitting.recordings()[0].recording->frame_count() /
+                        fitting.recordings()[0].recording->fps;
+  const std::vector<EffectValues> now = fitting.Model(fit.hypothesis).Apply(fit.x).effects;
+  std::vector<EffectValues>& starts = fit.hypothesis.effects;
+  Eigen::Index behind = 0;  // entries of x behind the effect's
+  for (std::size_t n = 1; n <= starts.size(); ++n) {
+    const EffectValues& effect = now[now.size() - n];
+    const Eigen::Index size = effect.values.size();
+    if (IsTooSlow(fitting, effect)) {
+      Eigen::VectorXd constant = Eigen::VectorXd::Zero(size);
+      constant[0] = effect.values[0];
+      constant.segment<3>(3) = std::sin(effect.values[2] * middle) * effect.values.segment<3>(3) +
+                               std::cos(effect.values[2] * middle) * effect.values.segment<3>(6);
+      starts[starts.size() - n].values = constant;
+      fit.x.segment(fit.x.size() - behind - size, size).setZero();
+    }
+    behind += size;
+  }
+  return fit;
+}
+
+struct ScoredTerm {
   Term term;
   double score;  // part of the squared misfit that it takes, in a linear fit
   Eigen::VectorXd coefficients;
@@ -147,7 +167,7 @@ class Leftover {
   }
 
   // As much of the coefficients as leaves least; nothing if all leave more than none.
-  std::optional<Eigen::VectorXd> Shortened(const Scored& scored) const {
+  std::optional<Eigen::VectorXd> Shortened(const ScoredTerm& scored) const {
     double least = r_.squaredNorm();
     std::optional<Eigen::VectorXd> best;
     for (double part : {1.0, 0.5, 0.25, 0.1}) {
@@ -181,8 +201,8 @@ class Leftover {
 };
 
 // The terms that take most, the best frequency of each.
-std::vector<Scored> BestTerms(const Fitting& fitting, const Descent& from, const Leftover& left,
-                              const WorkShare& stage) {
+std::vector<ScoredTerm> BestTerms(const Fitting& fitting, const Descent& from, const Leftover& left,
+                                  const WorkShare& stage) {
   const std::vector<Term> library = LibraryFor(*fitting.recordings()[0].recording);
   std::vector<Eigen::VectorXd> found(library.size());
   fitting.journal().Stage(stage, static_cast<int>(library.size()), "trying the terms of a law");
@@ -193,7 +213,7 @@ std::vector<Scored> BestTerms(const Fitting& fitting, const Descent& from, const
     key.Add(from.x).Add(term.acts_on).Add(term.in_time).Add(term.rate);
     found[i] = fitting.journal().Get(key, [&] { return left.Score(term); });
   });
-  std::vector<Scored> scored;
+  std::vector<ScoredTerm> scored;
   for (std::size_t i = 0; i < library.size(); ++i) {
     const Eigen::Index count = found[i].size() - 1;
     if (found[i][0] >= kLeastScore) {
@@ -201,11 +221,11 @@ std::vector<Scored> BestTerms(const Fitting& fitting, const Descent& from, const
     }
   }
   std::stable_sort(scored.begin(), scored.end(),
-                   [](const Scored& p, const Scored& q) { return p.score > q.score; });
-  std::vector<Scored> best;
-  for (const Scored& one : scored) {
+                   [](const ScoredTerm& p, const ScoredTerm& q) { return p.score > q.score; });
+  std::vector<ScoredTerm> best;
+  for (const ScoredTerm& one : scored) {
     const bool known = std::any_of(best.begin(), best.end(),
-                                   [&](const Scored& b) { return b.term.IsLike(one.term); });
+                                   [&](const ScoredTerm& b) { return b.term.IsLike(one.term); });
     if (!known && best.size() < kMostFits) best.push_back(one);
   }
   return best;
@@ -217,18 +237,13 @@ std::optional<Descent> AddTerm(const Fitting& fitting, const Descent& from,
   Leftover left(fitting, from);
   if (!left.Prepare()) return {};
   std::vector<Descent> fits;
-  for (const Scored& scored : BestTerms(fitting, from, left, stage.Part(0, 0.4))) {
+  for (const ScoredTerm& scored : BestTerms(fitting, from, left, stage.Part(0, 0.4))) {
     const auto start = left.Shortened(scored);
     if (start) fits.push_back(from.WithNewEffect(scored.term.With(*start)));
   }
-  const auto drop_slow = [&] {
-    std::erase_if(fits, [&](const Descent& fit) { return HasSlowTerm(fitting, fit); });
-  };
-  Halve(fitting, kEarlyTermCuts, stage.Part(0.4, 0.5), " with a term of a law", &fits);
-  drop_slow();
-  fits.resize(std::min(fits.size(), kTermCuts[0].kept));
-  Halve(fitting, kTermCuts, stage.Part(0.5, 1), " with a term of a law", &fits);
-  drop_slow();
+  Halve(fitting, kTermCuts, stage.Part(0.4, 0.9), " with a term of a law", &fits);
+  for (Descent& fit : fits) fit = WithoutSlowWaves(fitting, std::move(fit));
+  Halve(fitting, kOnceMoreCuts, stage.Part(0.9, 1), " with a term of a law", &fits);
   if (fits.empty()) return {};
   return fits.front();
 }
@@ -252,7 +267,7 @@ Law Shorter(const Inquiry& inquiry, Law law, const WorkShare& stage) {
   for (int from_last = law.terms - 1; from_last > 0; --from_last) {
     std::vector<Descent> fits = {
         WithoutTerm(law.verdict.descent, static_cast<std::size_t>(from_last))};
-    Halve(inquiry.fitting, kFewerCuts, stage, " with a term less", &fits);
+    Halve(inquiry.fitting, kOnceMoreCuts, stage, " with a term less", &fits);
     const auto verdict = fits.empty() ? std::nullopt : inquiry.fitting.Judge(fits.front());
     if (!verdict || IsSurelyBetter(inquiry.Gain(*verdict, law.verdict))) continue;
     law = {*verdict, law.terms - 1};
