@@ -12,10 +12,10 @@
 namespace physpring {
 
 struct DiagnosisRecordings {
-  std::vector<Recording> fit;
-  std::vector<Recording> held_out;  // none: frames of those to fit are held out
+  std::vector<Recording> fit = {};
+  std::vector<Recording> held_out = {};  // none: frames of those to fit are held out
   // Of the object before it changed. They are fitted, too, without the effects that are looked for.
-  std::vector<Recording> before;
+  std::vector<Recording> before = {};
 };
 
 // Without recordings to judge by, whole runs of `data` are held out where it has enough of them
