@@ -275,16 +275,15 @@ Law Shorter(const Inquiry& inquiry, Law law, const WorkShare& stage) {
   return law;
 }
 
-// The fits with one, two, ... terms, each better than the one before it.
-std::vector<Verdict> FindTerms(const Inquiry& inquiry, const Verdict& without, const Descent& from,
+// The fits with one, two, ... terms. The first one may predict badly alone, and well with the next.
+std::vector<Verdict> FindTerms(const Inquiry& inquiry, const Descent& from,
                                const WorkShare& stage) {
   std::vector<Verdict> found;
   for (int n = 0; n < kMostTerms; ++n) {
-    const Verdict& before = found.empty() ? without : found.back();
     const WorkShare part = stage.Part(n / double{kMostTerms}, (n + 1) / double{kMostTerms});
-    const auto fit = AddTerm(inquiry.fitting, found.empty() ? from : before.descent, part);
+    const auto fit = AddTerm(inquiry.fitting, found.empty() ? from : found.back().descent, part);
     const auto verdict = fit ? inquiry.fitting.Judge(*fit) : std::nullopt;
-    if (!verdict || verdict->track.held >= before.track.held) break;
+    if (!verdict) break;
     found.push_back(*verdict);
     if (IsExplained(verdict->track.held, inquiry.noise_floor)) break;
   }
@@ -295,7 +294,7 @@ std::vector<Verdict> FindTerms(const Inquiry& inquiry, const Verdict& without, c
 
 std::optional<Law> FindLaw(const Inquiry& inquiry, const Verdict& without, const Descent& from,
                            const WorkShare& stage) {
-  const std::vector<Verdict> found = FindTerms(inquiry, without, from, stage.Part(0, 0.9));
+  const std::vector<Verdict> found = FindTerms(inquiry, from, stage.Part(0, 0.9));
   if (found.empty()) return {};
   std::size_t last = 0;  // each term but the first must help surely
   while (last + 1 < found.size() && IsSurelyBetter(inquiry.Gain(found[last], found[last + 1]))) {
