@@ -11,6 +11,7 @@ namespace physpring {
 void AddRecordCommand(CLI::App& app);
 void AddTrainCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
+void AddTrackCommand(CLI::App& app);
 void AddExportCommand(CLI::App& app);
 void AddDiagnoseCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);

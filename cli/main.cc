@@ -53,6 +53,7 @@ int RunProgram(int argc, char** argv) {
   physpring::AddRecordCommand(app);
   physpring::AddTrainCommand(app);
   physpring::AddEvalCommand(app);
+  physpring::AddTrackCommand(app);
   physpring::AddExportCommand(app);
   physpring::AddDiagnoseCommand(app);
   physpring::AddReplayCommand(app);

@@ -64,13 +64,17 @@ class Tracer {
     EffectProblem problem = Add(effect, start);
     const Eigen::VectorXd x = Extend(start);
     if (!problem.FixSubsteps(x)) return kNone;
-    const auto at = problem.Residuals(x);
-    if (!at) return kNone;
-    const int own = static_cast<int>(fit_.x.size()), added = static_cast<int>(start.size());
-    Eigen::MatrixXd j(r_.size(), own + added);
-    j << j0_,
-        DifferenceColumns(ResidualsOf(problem), x, *at, {own, added, fitting_.difference(), 1});
-    return 1 - BestStep(&problem, x, *at, j) / least_;
+    const Eigen::Index own = fit_.x.size(), added = start.size();
+    std::vector<Eigen::VectorXd> moved(static_cast<std::size_t>(added) + 1, x);
+    for (Eigen::Index i = 0; i < added; ++i) moved[i + 1][own + i] += fitting_.difference();
+    const auto at = problem.Residuals(moved);
+    if (!at[0]) return kNone;
+    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(r_.size(), own + added);
+    j.leftCols(own) = j0_;
+    for (Eigen::Index i = 0; i < added; ++i) {
+      if (at[i + 1]) j.col(own + i) = (*at[i + 1] - *at[0]) / fitting_.difference();
+    }
+    return 1 - BestStep(&problem, x, *at[0], j) / least_;
   }
 
  private:

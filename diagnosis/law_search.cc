@@ -7,9 +7,11 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "diagnosis/acceptance.h"
 #include "diagnosis/halving.h"
+#include "diagnosis/law_term.h"
 #include "trainer/solvers/levenberg_marquardt.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/effects/registry.h"
@@ -25,209 +27,147 @@ constexpr double kTermGain = 0.1;
 constexpr std::array<Cut, 2> kTermCuts = {{{kTermGain, 4, 3, 3}, {0, 15, 1, 1}}};
 constexpr std::array<Cut, 1> kOnceMoreCuts = {{{0, 15, 1, 1}}};
 constexpr double kLeastScore = 0.02;  // part of the squared misfit that a term may take, at least
-constexpr double kFewestFrames = 8;   // in a period
-
-// What the values of `custom` say, as far as they do not move.
-struct Term {
-  double acts_on, in_time;
-  double step;  // of a coefficient, whose response is well above rounding
-  double rate = 0;
-
-  bool periodic() const { return in_time == 3; }
-  bool of_springs() const { return acts_on >= 3; }
-  bool IsLike(const Term& other) const {
-    return acts_on == other.acts_on && in_time == other.in_time;
-  }
-
-  // The places of its coefficients among the values.
-  std::vector<int> Coefficients() const {
-    std::vector<int> places;
-    for (int first : {3, 6}) {
-      if (first == 6 && !periodic()) continue;
-      for (int i = 0; i < (of_springs() ? 1 : 3); ++i) places.push_back(first + i);
-    }
-    return places;
-  }
-
-  EffectValues With(const Eigen::VectorXd& coefficients) const {
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(9);
-    values.head(3) << acts_on, in_time, rate;
-    const std::vector<int> places = Coefficients();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      values[places[i]] = coefficients[static_cast<Eigen::Index>(i)];
-    }
-    return {"custom", values};
-  }
-};
-
-// Those that are not an effect of the list already, as a constant acceleration is.
-constexpr std::array<Term, 11> kLibrary = {{{0, 1, 0.1},
-                                            {0, 2, 0.1},
-                                            {0, 3, 0.1},
-                                            {1, 0, 1},
-                                            {1, 2, 1},
-                                            {1, 3, 1},
-                                            {2, 0, 0.1},
-                                            {2, 3, 0.1},
-                                            {3, 2, 0.01},
-                                            {3, 3, 0.01},
-                                            {4, 0, 0.1}}};
-
-// The lowest frequency that is tried, rad/s: half a period in the recording. Others are as far
-// apart: at twice that distance a wave is of the wrong sign at one end.
-double SlowestRate(const Recording& recording) {
-  return std::numbers::pi * recording.fps / recording.frame_count();
-}
-
-std::vector<Term> LibraryFor(const Recording& recording) {
-  const double slowest = SlowestRate(recording);
-  const double fastest = 2 * std::numbers::pi * recording.fps / kFewestFrames;
-  std::vector<Term> terms;
-  for (Term term : kLibrary) {
-    if (!term.periodic()) terms.push_back(term);
-    for (int n = 1; term.periodic() && n * slowest < fastest; ++n) {
-      term.rate = n * slowest;
-      terms.push_back(term);
-    }
-  }
-  return terms;
-}
-
-// Whether a wave is so slow that it stands for another course.
-bool IsTooSlow(const Fitting& fitting, const EffectValues& effect) {
-  const double slowest = 0.5 * SlowestRate(*fitting.recordings()[0].recording);
-  return effect.name == "custom" && effect.values[1] == 3 && effect.values[2] < slowest;
-}
-
-// The fit with constant terms in place of waves that are too slow: what they degenerate to.
-Descent WithoutSlowWaves(const Fitting& fitting, Descent fit) {
-  const double middle = 0.5 * fitting.recordings()[0].recording->frame_count() /
-                        fitting.recordings()[0].recording->fps;
-  const std::vector<EffectValues> now = fitting.Model(fit.hypothesis).Apply(fit.x).effects;
-  std::vector<EffectValues>& starts = fit.hypothesis.effects;
-  Eigen::Index behind = 0;  // entries of x behind the effect's
-  for (std::size_t n = 1; n <= starts.size(); ++n) {
-    const EffectValues& effect = now[now.size() - n];
-    const Eigen::Index size = effect.values.size();
-    if (IsTooSlow(fitting, effect)) {
-      Eigen::VectorXd constant = Eigen::VectorXd::Zero(size);
-      constant[0] = effect.values[0];
-      constant.segment<3>(3) = std::sin(effect.values[2] * middle) * effect.values.segment<3>(3) +
-                               std::cos(effect.values[2] * middle) * effect.values.segment<3>(6);
-      starts[starts.size() - n].values = constant;
-      fit.x.segment(fit.x.size() - behind - size, size).setZero();
-    }
-    behind += size;
-  }
-  return fit;
-}
 
 struct ScoredTerm {
-  Term term;
-  double score;  // part of the squared misfit that it takes, in a linear fit
+  LawTerm term;
+  double score = 0;  // part of the squared misfit that it takes, in a linear fit
   Eigen::VectorXd coefficients;
 };
 
 // What is left to explain, beyond what the body and its effects could take.
 class Leftover {
  public:
-  Leftover(const Fitting& fitting, const Descent& from) : fitting_(fitting), from_(from) {}
+  Leftover(const Fitting& fitting, const Descent& from)
+      : fitting_(fitting),
+        from_(from),
+        with_(from.WithNewEffect(LawTerm().With({}))),
+        problem_(fitting.Problem(with_.hypothesis, kTermGain, Fitting::Care::kRough)) {}
 
   // False if the descent cannot be evaluated.
   bool Prepare() {
-    EffectProblem problem = fitting_.Problem(from_.hypothesis, kTermGain, Fitting::Care::kRough);
-    if (!problem.FixSubsteps(from_.x)) return false;
-    const auto r = problem.Residuals(from_.x);
+    if (!problem_.FixSubsteps(with_.x)) return false;
+    const auto r = problem_.Residuals(with_.x);
     if (!r || r->size() == 0) return false;
-    const int size = static_cast<int>(from_.x.size());
-    const Eigen::MatrixXd j = DifferenceColumns(
-        ResidualsOf(problem), from_.x, *r, {0, size, fitting_.difference(), fitting_.threads()});
-    body_.compute(j);
+    body_.compute(DifferenceColumns(ResidualsOf(problem_), with_.x, *r,
+                                    {0, own(), fitting_.difference(), fitting_.threads()}));
     r_ = *r;
     left_ = Beyond(r_);
     return true;
   }
 
-  // The score and the coefficients of a term, as one vector; a score of 0 where it diverges.
-  Eigen::VectorXd Score(const Term& term) const {
-    const Eigen::Index count = static_cast<Eigen::Index>(term.Coefficients().size());
-    Eigen::VectorXd scored = Eigen::VectorXd::Zero(1 + count);
-    Eigen::MatrixXd responses(r_.size(), count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto with = ResidualsWith(term.With(term.step * Eigen::VectorXd::Unit(count, i)));
-      if (!with) return scored;
-      responses.col(i) = Beyond((*with - r_) / term.step);
-    }
-    Eigen::MatrixXd normal = responses.transpose() * responses;
-    normal.diagonal() *= 1 + 1e-6;
-    const Eigen::VectorXd along = responses.transpose() * left_;
-    scored.tail(count) = -normal.ldlt().solve(along);
-    scored[0] = -along.dot(scored.tail(count)) / left_.squaredNorm();
-    return scored;
+  // The best term of a kind. Of waves, those beside the best frequency are looked at, too.
+  ScoredTerm BestOf(const LawTerm& kind) const {
+    const Recording& recording = *fitting_.recordings()[0].recording;
+    ScoredTerm best = BestAmong(TermsOf(kind, recording));
+    if (!kind.periodic()) return best;
+    std::vector<LawTerm> beside(2, best.term);
+    beside[0].rate = std::max(beside[0].rate - SlowestRate(recording), SlowestRate(recording));
+    beside[1].rate += SlowestRate(recording);
+    const ScoredTerm other = BestAmong(beside);
+    return other.score > best.score ? other : best;
   }
 
   // As much of the coefficients as leaves least; nothing if all leave more than none.
   std::optional<Eigen::VectorXd> Shortened(const ScoredTerm& scored) const {
+    std::vector<Eigen::VectorXd> shortened;
+    for (double part : {1.0, 0.5, 0.25, 0.1}) shortened.emplace_back(part * scored.coefficients);
+    std::vector<SpringMassSystem> systems;
+    for (const Eigen::VectorXd& one : shortened) systems.push_back(SystemWith(scored.term, one));
+    const auto residuals = problem_.ResidualsOfSystems(std::move(systems));
     double least = r_.squaredNorm();
     std::optional<Eigen::VectorXd> best;
-    for (double part : {1.0, 0.5, 0.25, 0.1}) {
-      const auto with = ResidualsWith(scored.term.With(part * scored.coefficients));
-      if (!with || with->squaredNorm() >= least) continue;
-      least = with->squaredNorm();
-      best = part * scored.coefficients;
+    for (std::size_t i = 0; i < shortened.size(); ++i) {
+      if (!residuals[i] || residuals[i]->squaredNorm() >= least) continue;
+      least = residuals[i]->squaredNorm();
+      best = shortened[i];
     }
     return best;
   }
 
  private:
+  int own() const { return static_cast<int>(from_.x.size()); }
+
   Eigen::VectorXd Beyond(const Eigen::VectorXd& r) const {
-    const Eigen::Index size = from_.x.size();
     Eigen::VectorXd turned = body_.householderQ().transpose() * r;
-    turned.head(size).setZero();
+    turned.head(own()).setZero();
     return body_.householderQ() * turned;
   }
 
-  std::optional<Eigen::VectorXd> ResidualsWith(const EffectValues& effect) const {
-    const Descent with = from_.WithNewEffect(effect);
-    EffectProblem problem = fitting_.Problem(with.hypothesis, kTermGain, Fitting::Care::kRough);
-    if (!problem.FixSubsteps(with.x)) return {};
-    return problem.Residuals(with.x);
+  SpringMassSystem SystemWith(const LawTerm& term, const Eigen::VectorXd& coefficients) const {
+    SpringMassSystem system = problem_.SystemAt(with_.x);
+    system.effects.back() = term.With(coefficients);
+    return system;
+  }
+
+  // All go side by side. One that diverges has the score 0.
+  ScoredTerm BestAmong(const std::vector<LawTerm>& terms) const {
+    std::vector<SpringMassSystem> systems;
+    for (const LawTerm& term : terms) {
+      const Eigen::Index count = term.coefficient_count();
+      for (Eigen::Index i = 0; i < count; ++i) {
+        systems.push_back(SystemWith(term, term.step * Eigen::VectorXd::Unit(count, i)));
+      }
+    }
+    const auto residuals = problem_.ResidualsOfSystems(std::move(systems));
+    ScoredTerm best = {terms[0], 0, {}};
+    std::size_t first = 0;
+    for (const LawTerm& term : terms) {
+      const auto count = static_cast<std::size_t>(term.coefficient_count());
+      const std::span with(&residuals[first], count);
+      first += count;
+      if (!std::all_of(with.begin(), with.end(), [](const auto& r) { return r.has_value(); })) {
+        continue;
+      }
+      ScoredTerm scored = Score(term, with);
+      if (scored.score > best.score) best = std::move(scored);
+    }
+    return best;
+  }
+
+  // From the residuals with a small step of each coefficient.
+  ScoredTerm Score(const LawTerm& term,
+                   std::span<const std::optional<Eigen::VectorXd>> with) const {
+    Eigen::MatrixXd responses(r_.size(), static_cast<Eigen::Index>(with.size()));
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      responses.col(static_cast<Eigen::Index>(i)) = Beyond((*with[i] - r_) / term.step);
+    }
+    Eigen::MatrixXd normal = responses.transpose() * responses;
+    normal.diagonal() *= 1 + 1e-6;
+    const Eigen::VectorXd along = responses.transpose() * left_;
+    const Eigen::VectorXd coefficients = -normal.ldlt().solve(along);
+    return {term, -along.dot(coefficients) / left_.squaredNorm(), coefficients};
   }
 
   const Fitting& fitting_;
   const Descent& from_;
+  Descent with_;  // from_ with a term of no strength
+  EffectProblem problem_;
   Eigen::HouseholderQR<Eigen::MatrixXd> body_;  // of the responses to the body and its effects
   Eigen::VectorXd r_, left_;
 };
 
-// The terms that take most, the best frequency of each.
+// The terms that take most, one of each kind.
 std::vector<ScoredTerm> BestTerms(const Fitting& fitting, const Descent& from, const Leftover& left,
                                   const WorkShare& stage) {
-  const std::vector<Term> library = LibraryFor(*fitting.recordings()[0].recording);
-  std::vector<Eigen::VectorXd> found(library.size());
-  fitting.journal().Stage(stage, static_cast<int>(library.size()), "trying the terms of a law");
-  ParallelFor(static_cast<int>(library.size()), fitting.threads(), [&](int n) {
+  std::vector<ScoredTerm> best(kLawLibrary.size());
+  fitting.journal().Stage(stage, static_cast<int>(kLawLibrary.size()), "trying the terms of a law");
+  ParallelFor(static_cast<int>(kLawLibrary.size()), fitting.threads(), [&](int n) {
     const auto i = static_cast<std::size_t>(n);
-    const Term& term = library[i];
     PieceKey key = KeyOf("term", from.hypothesis);
-    key.Add(from.x).Add(term.acts_on).Add(term.in_time).Add(term.rate);
-    found[i] = fitting.journal().Get(key, [&] { return left.Score(term); });
+    key.Add(from.x).Add(static_cast<double>(i));
+    const Eigen::VectorXd found = fitting.journal().Get(key, [&] {
+      const ScoredTerm scored = left.BestOf(kLawLibrary[i]);
+      Eigen::VectorXd piece(2 + scored.coefficients.size());
+      piece << scored.score, scored.term.rate, scored.coefficients;
+      return piece;
+    });
+    best[i] = {kLawLibrary[i], found[0], found.tail(found.size() - 2)};
+    best[i].term.rate = found[1];
   });
-  std::vector<ScoredTerm> scored;
-  for (std::size_t i = 0; i < library.size(); ++i) {
-    const Eigen::Index count = found[i].size() - 1;
-    if (found[i][0] >= kLeastScore) {
-      scored.push_back({library[i], found[i][0], found[i].tail(count)});
-    }
-  }
-  std::stable_sort(scored.begin(), scored.end(),
+  std::erase_if(best, [](const ScoredTerm& scored) { return scored.score < kLeastScore; });
+  std::stable_sort(best.begin(), best.end(),
                    [](const ScoredTerm& p, const ScoredTerm& q) { return p.score > q.score; });
-  std::vector<ScoredTerm> best;
-  for (const ScoredTerm& one : scored) {
-    const bool known = std::any_of(best.begin(), best.end(),
-                                   [&](const ScoredTerm& b) { return b.term.IsLike(one.term); });
-    if (!known && best.size() < kMostFits) best.push_back(one);
-  }
+  best.resize(std::min(best.size(), kMostFits));
   return best;
 }
 
@@ -246,19 +186,6 @@ std::optional<Descent> AddTerm(const Fitting& fitting, const Descent& from,
   Halve(fitting, kOnceMoreCuts, stage.Part(0.9, 1), " with a term of a law", &fits);
   if (fits.empty()) return {};
   return fits.front();
-}
-
-// The fit without one of its last effects, `from_last` before the last one.
-Descent WithoutTerm(Descent fit, std::size_t from_last) {
-  std::vector<EffectValues>& effects = fit.hypothesis.effects;
-  const auto term = effects.end() - 1 - static_cast<long>(from_last);
-  Eigen::Index behind = 0;  // values of those behind it
-  for (auto effect = term + 1; effect != effects.end(); ++effect) behind += effect->values.size();
-  Eigen::VectorXd x(fit.x.size() - term->values.size());
-  x << fit.x.head(x.size() - behind), fit.x.tail(behind);
-  fit.x = x;
-  effects.erase(term);
-  return fit;
 }
 
 // The law without those of its first terms without which it is as good: a term may have stood for
@@ -301,7 +228,7 @@ std::optional<Law> FindLaw(const Inquiry& inquiry, const Verdict& without, const
     ++last;
   }
   Law law = Shorter(inquiry, {found[last], static_cast<int>(last) + 1}, stage.Part(0.9, 1));
-  Threshold threshold = inquiry.ThresholdFor(kLibrary.size());
+  Threshold threshold = inquiry.ThresholdFor(kLawLibrary.size());
   threshold.least_gain = std::max(threshold.least_gain, kHalfOfTheError);
   const BootstrapResult gain = inquiry.Gain(without, law.verdict);
   if (!IsWorthIt(gain, without.track.held, threshold)) return {};

@@ -40,9 +40,8 @@ Json EffectList(const Diagnosis& diagnosis) {
       shared[parameter.key] = one ? of_shared[0] : of_shared;
       unknown[parameter.key] = one ? of_unknown[0] : of_unknown;
     }
-    if (diagnosis.effects[n].name == "custom") {
-      list[n]["formula"] = PictureOf(diagnosis, diagnosis.effects[n]).lacks;
-    }
+    const EffectPicture picture = PictureOf(diagnosis, diagnosis.effects[n]);
+    if (picture.formula) list[n]["formula"] = picture.lacks;
     list[n]["standard_errors"] = errors;
     list[n]["shared"] = shared;
     list[n]["unknown"] = unknown;

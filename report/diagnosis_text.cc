@@ -83,8 +83,8 @@ std::string DescribeVerdict(const Diagnosis& diagnosis) {
   std::string verdict = diagnosis.effects.empty() ? "no effect was found" : "";
   for (const EffectValues& effect : diagnosis.effects) {
     verdict += (verdict.empty() ? "the model lacks " : ", ") + effect.name;
-    if (effect.name == "custom")
-      verdict += fmt::format(" ({})", PictureOf(diagnosis, effect).lacks);
+    const EffectPicture picture = PictureOf(diagnosis, effect);
+    if (picture.formula) verdict += fmt::format(" ({})", picture.lacks);
   }
   if (!diagnosis.unexplained) return verdict;
   const Unexplained& left = *diagnosis.unexplained;

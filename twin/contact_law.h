@@ -27,6 +27,7 @@ struct ContactPair {
   Real friction = 0;     // mu
   FrictionCone cone = FrictionCone::kElliptic;
 
+  bool operator==(const ContactPair&) const = default;
   // With numbers of another precision.
   template <class Other>
   ContactPair<Other> To() const;

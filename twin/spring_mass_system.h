@@ -22,6 +22,8 @@ struct ContactCoefficients {
   ContactPair<double> surface = {0.5, 0.3};  // against ground and geoms
   ContactPair<double> object = {0.7, 0.3};   // between particles; their cone is elliptic
   double collision_distance = 0;             // m, between particles; 0 = particles do not collide
+
+  bool operator==(const ContactCoefficients&) const = default;
 };
 
 struct SpringMassSystem {
@@ -42,6 +44,9 @@ struct SpringMassSystem {
 
   ContactCoefficients contact;
   Eigen::VectorXd contact_radius;  // (nodes), m: distance from a surface at which a node touches it
+
+  // Of systems with as many nodes, controllers and springs.
+  bool operator==(const SpringMassSystem&) const = default;
 
   int node_count() const { return static_cast<int>(position.cols()) - controllers; }
   int spring_count() const { return static_cast<int>(springs.size()); }

@@ -22,6 +22,10 @@ struct StabilityBound {
 // By Lanczos' method; springs of stiffness and dashpot 0 bound nothing (timestep is then infinite).
 StabilityBound ComputeStabilityBound(const SpringMassSystem& system);
 
+// The same without a search, in a tenth of the time: omega^2 and gamma up to twice too high. What
+// is stable by it is stable.
+StabilityBound RoughStabilityBound(const SpringMassSystem& system);
+
 // Lowers all dashpots by one factor, as far as it takes to make `timestep` stable. Returns whether
 // it then is.
 bool LimitDashpots(double timestep, SpringMassSystem* system);

@@ -60,6 +60,8 @@ def cases(inputs):
         Case('eval', ['eval', inputs / 'small.twin.npz', inputs / 'swing.npz', '--json',
                       '{out}/eval.json', '--picture', '{out}/eval.html', '--trajectory',
                       '{out}/motion.npz']),
+        Case('track', ['track', inputs / 'small.twin.npz', inputs / 'swing.npz', '--hide', '0.5',
+                       '-o', '{out}/states.npz'], ['--force']),
         Case('info', ['info', inputs / 'swing.npz', '--json', '{out}/info.json']),
         Case('diagnose', ['diagnose', inputs / 'small.twin.npz', inputs / 'swing.npz', '--heldout',
                           inputs / 'held.npz', '-o', '{out}/diagnosis', '--resume'], []),

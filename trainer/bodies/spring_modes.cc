@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/spring_modes.h"
 
-#include <Spectra/MatOp/SparseSymShiftSolve.h>
-#include <Spectra/SymEigsShiftSolver.h>
-
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "twin/lowest_modes.h"
+
 namespace physpring {
 namespace {
 
 constexpr double kZero = 1e-9;  // eigenvalues up to so many mean diagonal entries are 0
-constexpr int kDense = 64;      // with fewer points all eigenvectors are computed
-
-// columns: eigenvectors in the order of their eigenvalues, as many as `values`
-struct Modes {
-  Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;
-};
 
 Eigen::SparseMatrix<double> Laplacian(const SpringMassSystem& system) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -35,22 +26,6 @@ Eigen::SparseMatrix<double> Laplacian(const SpringMassSystem& system) {
   Eigen::SparseMatrix<double> laplacian(system.position.cols(), system.position.cols());
   laplacian.setFromTriplets(entries.begin(), entries.end());
   return laplacian;
-}
-
-Modes LowestModes(const Eigen::SparseMatrix<double>& laplacian, int count) {
-  const auto points = static_cast<int>(laplacian.cols());
-  if (points >= kDense && 3 * count < points) {
-    // the shift makes the matrix regular: its lowest eigenvalue is 0
-    Spectra::SparseSymShiftSolve<double> operation(laplacian);
-    Spectra::SymEigsShiftSolver<Spectra::SparseSymShiftSolve<double>> solver(
-        operation, count, std::min(points, 3 * count), -1e-3 * laplacian.diagonal().mean());
-    solver.init();
-    const auto found = solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10,
-                                      Spectra::SortRule::SmallestAlge);
-    if (found == count) return {solver.eigenvalues(), solver.eigenvectors()};
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(laplacian)};
-  return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 }  // namespace

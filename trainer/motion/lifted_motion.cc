@@ -9,6 +9,7 @@
 #include "trainer/motion/lane_rollout.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/hierarchy.h"
+#include "twin/lane_simulator.h"
 
 namespace physpring {
 namespace {
@@ -71,13 +72,16 @@ LiftedMotion::Substeps LiftedMotion::SubstepsOf(const SpringMassSystem& system) 
 }
 
 bool LiftedMotion::AreEnough(const Substeps& substeps, const SpringMassSystem& system) const {
-  const StabilityBound bound = ComputeStabilityBound(system);
-  for (std::size_t e = 0; e < substeps.size(); ++e) {
-    const double fps = episodes_[e].recording->fps;
-    if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps[e]) return false;
-    if (StableSubsteps(bound, 1 / fps, options_.safety) * fps > options_.most_rate) return false;
-  }
-  return true;
+  const auto are_enough_for = [&](const StabilityBound& bound) {
+    for (std::size_t e = 0; e < substeps.size(); ++e) {
+      const double fps = episodes_[e].recording->fps;
+      if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps[e]) return false;
+      if (StableSubsteps(bound, 1 / fps, options_.safety) * fps > options_.most_rate) return false;
+    }
+    return true;
+  };
+  return are_enough_for(RoughStabilityBound(system)) ||
+         are_enough_for(ComputeStabilityBound(system));
 }
 
 RolloutOptions LiftedMotion::RolloutOf(int e, const Substeps& substeps) const {
@@ -86,11 +90,8 @@ RolloutOptions LiftedMotion::RolloutOf(int e, const Substeps& substeps) const {
   return options;
 }
 
-SpringMassSystem LiftedMotion::SystemIn(int e, SpringMassSystem system) const {
-  std::vector<EffectValues>& effects = system.effects;
-  if (episodes_[e].before_change) {
-    effects.resize(std::min(options_.lasting_effects, effects.size()));
-  }
+SpringMassSystem LiftedMotion::BeforeChange(SpringMassSystem system) const {
+  system.effects.resize(std::min(options_.lasting_effects, system.effects.size()));
   return system;
 }
 
@@ -111,7 +112,9 @@ std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMass
                                                          const Substeps& substeps) const {
   Motion motion;
   if (episodes_[e].frames < 2) return motion;
-  motion.rollout = RollOut(SystemIn(e, system), EpisodeOfNodes(e), RolloutOf(e, substeps));
+  const bool before = episodes_[e].before_change;
+  motion.rollout =
+      RollOut(before ? BeforeChange(system) : system, EpisodeOfNodes(e), RolloutOf(e, substeps));
   if (motion.rollout->diverged()) return {};
   if (!lifts_.empty()) motion.lifted = Lifted(e, motion.rollout->positions());
   return motion;
@@ -119,13 +122,30 @@ std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMass
 
 std::vector<std::optional<std::vector<Points>>> LiftedMotion::RunSideBySide(
     int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const {
-  using Particles = std::vector<Points>;
-  if (episodes_[e].frames < 2) return {systems.size(), Particles()};
-  std::vector<SpringMassSystem> acting;
-  for (const SpringMassSystem& system : systems) acting.push_back(SystemIn(e, system));
-  auto all = RollOutSideBySide(acting, EpisodeOfNodes(e), RolloutOf(e, substeps));
+  if (episodes_[e].frames < 2) return {systems.size(), std::vector<Points>()};
+  if (!episodes_[e].before_change) return RunAll(e, systems, substeps);
+  // systems that differ in new effects alone move alike before the change: each goes once
+  std::vector<SpringMassSystem> unlike;
+  std::vector<std::size_t> place;
+  for (const SpringMassSystem& system : systems) {
+    SpringMassSystem before = BeforeChange(system);
+    const auto same = std::find_if(unlike.begin(), unlike.end(), [&](const SpringMassSystem& one) {
+      return AreAlike(one, before) && one == before;
+    });
+    place.push_back(same - unlike.begin());
+    if (same == unlike.end()) unlike.push_back(std::move(before));
+  }
+  const auto particles = RunAll(e, unlike, substeps);
+  std::vector<std::optional<std::vector<Points>>> all;
+  for (std::size_t i : place) all.push_back(particles[i]);
+  return all;
+}
+
+std::vector<std::optional<std::vector<Points>>> LiftedMotion::RunAll(
+    int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const {
+  auto all = RollOutSideBySide(systems, EpisodeOfNodes(e), RolloutOf(e, substeps));
   if (lifts_.empty()) return all;
-  for (std::optional<Particles>& particles : all) {
+  for (std::optional<std::vector<Points>>& particles : all) {
     if (particles) particles = Lifted(e, *particles);
   }
   return all;

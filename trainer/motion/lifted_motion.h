@@ -81,8 +81,11 @@ class LiftedMotion {
 
  private:
   RolloutOptions RolloutOf(int e, const Substeps& substeps) const;
-  // The system without those effects that do not act in the episode.
-  SpringMassSystem SystemIn(int e, SpringMassSystem system) const;
+  // The system without those effects that do not act in episodes from before a change.
+  SpringMassSystem BeforeChange(SpringMassSystem system) const;
+  // RunSideBySide with the systems as they are.
+  std::vector<std::optional<std::vector<Points>>> RunAll(
+      int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const;
   Episode EpisodeOfNodes(int e) const;
   std::vector<Points> Lifted(int e, const std::vector<Points>& positions) const;
 

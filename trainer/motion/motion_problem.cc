@@ -85,19 +85,25 @@ std::vector<std::optional<Eigen::VectorXd>> MotionProblem::RollOutSideBySide(
 
 std::vector<std::optional<Eigen::VectorXd>> MotionProblem::Residuals(
     const std::vector<Eigen::VectorXd>& xs) const {
+  std::vector<SpringMassSystem> systems;
+  for (const Eigen::VectorXd& x : xs) systems.push_back(SystemAt(x));
+  return ResidualsOfSystems(std::move(systems));
+}
+
+std::vector<std::optional<Eigen::VectorXd>> MotionProblem::ResidualsOfSystems(
+    std::vector<SpringMassSystem> systems) const {
   // side by side go those that take equal sub-steps
   struct Group {
     std::vector<SpringMassSystem> systems;
     std::vector<std::size_t> places;
   };
   std::map<LiftedMotion::Substeps, Group> groups;
-  for (std::size_t i = 0; i < xs.size(); ++i) {
-    SpringMassSystem system = SystemAt(xs[i]);
-    Group& group = groups[SubstepsFor(system)];
-    group.systems.push_back(std::move(system));
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    Group& group = groups[SubstepsFor(systems[i])];
+    group.systems.push_back(std::move(systems[i]));
     group.places.push_back(i);
   }
-  std::vector<std::optional<Eigen::VectorXd>> all(xs.size());
+  std::vector<std::optional<Eigen::VectorXd>> all(systems.size());
   for (const auto& [substeps, group] : groups) {
     if (substeps.empty()) continue;
     auto residuals = RollOutSideBySide(group.systems, substeps);

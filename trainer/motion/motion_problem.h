@@ -45,9 +45,12 @@ class MotionProblem : public LeastSquares {
   bool FixSubsteps(const Eigen::VectorXd& x);
 
   // Each gives nothing where a motion diverges or would need too many sub-steps. Residuals at
-  // several x at once are the same numbers in less time. They may be asked for by several threads.
+  // several x, or of several systems, at once are the same numbers in less time. They may be asked
+  // for by several threads.
   std::vector<std::optional<Eigen::VectorXd>> Residuals(
       const std::vector<Eigen::VectorXd>& xs) const;
+  std::vector<std::optional<Eigen::VectorXd>> ResidualsOfSystems(
+      std::vector<SpringMassSystem> systems) const;
   std::optional<Eigen::VectorXd> Residuals(const Eigen::VectorXd& x) override;
   std::optional<Eigen::VectorXd> Linearise(const Eigen::VectorXd& x) override;
   Eigen::VectorXd JacobianTimes(const Eigen::VectorXd& v) override;

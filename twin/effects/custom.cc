@@ -1,16 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One term of a law that no other effect is, found from the data (diagnosis/law_search.h): what it
-// acts on, times a course c(t) in time. A system may have several of them.
-//   acts on       0  each node       force m c
-//                 1  its place       force m c * (x - x0), entry by entry; x0: the body's mean at
-//                 rest 2  its velocity    force m c * v 3  the stretch     extra tension c_x k (l -
-//                 L) 4  its square      extra tension c_x k (l - L)^2 / L
-//   in time       0  constant        c = a
-//                 1  growing         c = a t
-//                 2  its square      c = a t^2
-//                 3  periodic        c = a sin(w t) + b cos(w t)
-// A term of the stretch never takes a spring more than nine tenths of its stiffness, and never
-// gives it more than four times that.
+#include "twin/effects/custom.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,19 +11,14 @@
 namespace physpring {
 namespace {
 
-enum class ActsOn { kNode, kPlace, kVelocity, kStretch, kSquare };
-enum class InTime { kConstant, kGrowing, kSquare, kPeriodic };
-
-// The values: acts on, in time, w, a (3), b (3).
-constexpr int kTermValues = 9;
 constexpr double kLeastOfTerm = -0.9, kMostOfTerm = 4;  // c_x, of a term of the stretch
 
 ActsOn ActsOnOf(const Eigen::VectorXd& values) {
-  return static_cast<ActsOn>(std::clamp(std::lround(values[0]), 0L, 4L));
+  return static_cast<ActsOn>(std::clamp(std::lround(values[kCustomActsOn]), 0L, 4L));
 }
 
 InTime InTimeOf(const Eigen::VectorXd& values) {
-  return static_cast<InTime>(std::clamp(std::lround(values[1]), 0L, 3L));
+  return static_cast<InTime>(std::clamp(std::lround(values[kCustomInTime]), 0L, 3L));
 }
 
 bool IsOfSprings(const Eigen::VectorXd& values) { return ActsOnOf(values) >= ActsOn::kStretch; }
@@ -43,7 +28,7 @@ class TermCourse {
  public:
   TermCourse(const Eigen::VectorXd& values, double time)
       : periodic_(InTimeOf(values) == InTime::kPeriodic) {
-    const auto a = values.segment<3>(3), b = values.segment<3>(6);
+    const auto a = values.segment<3>(kCustomA), b = values.segment<3>(kCustomB);
     switch (InTimeOf(values)) {
       case InTime::kConstant:
         first_ = 1;
@@ -55,8 +40,8 @@ class TermCourse {
         first_ = time * time;
         break;
       case InTime::kPeriodic:
-        first_ = std::sin(values[2] * time);
-        second_ = std::cos(values[2] * time);
+        first_ = std::sin(values[kCustomRate] * time);
+        second_ = std::cos(values[kCustomRate] * time);
     }
     c_ = first_ * a + second_ * b;
     rate_slope_ = time * (second_ * a - first_ * b);
@@ -64,12 +49,12 @@ class TermCourse {
 
   const Eigen::Vector3d& c() const { return c_; }
 
-  // Adds to values_bar, (kTermValues), what c_bar = d loss / d c makes of them.
+  // Adds to values_bar, (kCustomValues), what c_bar = d loss / d c makes of them.
   void AddAdjoint(const Eigen::Vector3d& c_bar, double* values_bar) const {
-    if (periodic_) values_bar[2] += rate_slope_.dot(c_bar);
+    if (periodic_) values_bar[kCustomRate] += rate_slope_.dot(c_bar);
     for (int j = 0; j < 3; ++j) {
-      values_bar[3 + j] += first_ * c_bar[j];
-      values_bar[6 + j] += second_ * c_bar[j];
+      values_bar[kCustomA + j] += first_ * c_bar[j];
+      values_bar[kCustomB + j] += second_ * c_bar[j];
     }
   }
 
@@ -125,7 +110,7 @@ class CustomForce : public EffectForce {
 template <class Real>
 class CustomLaw {
  public:
-  static constexpr int kValues = kTermValues;
+  static constexpr int kValues = kCustomValues;
   static constexpr bool kHasInternal = false;
 
   CustomLaw(const Eigen::VectorXd& values, double time, double /*step*/)
@@ -133,9 +118,9 @@ class CustomLaw {
     const double c = course_.c()[0];
     factor_ = static_cast<Real>(std::clamp(c, kLeastOfTerm, kMostOfTerm));
     const bool moves = c > kLeastOfTerm && c < kMostOfTerm;
-    double slopes[kTermValues] = {};
+    double slopes[kCustomValues] = {};
     if (moves) course_.AddAdjoint(Eigen::Vector3d::UnitX(), slopes);
-    std::copy(slopes, slopes + kTermValues, slope_);
+    std::copy(slopes, slopes + kCustomValues, slope_);
   }
 
   Real Tension(const SpringMoment<Real>& s, Real*) const {
@@ -148,7 +133,7 @@ class CustomLaw {
     const Real stretch = s.length - s.rest_length;
     const Real part = square_ ? stretch / s.rest_length : Real(1);
     const Real factor_bar = tension_bar * s.stiffness * stretch * part;
-    for (int n = 0; n < kTermValues; ++n) values_bar[n] += factor_bar * slope_[n];
+    for (int n = 0; n < kCustomValues; ++n) values_bar[n] += factor_bar * slope_[n];
     bar->stiffness += tension_bar * factor_ * stretch * part;
     // (l - L)^2 / L: 2 (l - L) / L with l, and -(l - L) (l + L) / L^2 with L
     const Real force_bar = tension_bar * factor_ * s.stiffness;
@@ -160,8 +145,8 @@ class CustomLaw {
  private:
   TermCourse course_;
   bool square_;
-  Real factor_;              // c_x within its bounds
-  Real slope_[kTermValues];  // its derivatives with respect to the values
+  Real factor_;                // c_x within its bounds
+  Real slope_[kCustomValues];  // its derivatives with respect to the values
 };
 
 std::string InWords(const Eigen::Vector3d& v, bool scalar) {
@@ -171,7 +156,7 @@ std::string InWords(const Eigen::Vector3d& v, bool scalar) {
 
 // c(t) as a formula; the unit without its part of time.
 std::string CourseInWords(const Eigen::VectorXd& values, bool scalar) {
-  std::string a = InWords(values.segment<3>(3), scalar);
+  std::string a = InWords(values.segment<3>(kCustomA), scalar);
   switch (InTimeOf(values)) {
     case InTime::kConstant:
       return a;
@@ -181,15 +166,16 @@ std::string CourseInWords(const Eigen::VectorXd& values, bool scalar) {
       return a + " t²";
     default:
       return fmt::format("({0} sin({2:.3g} t) + {1} cos({2:.3g} t))", a,
-                         InWords(values.segment<3>(6), scalar), values[2]);
+                         InWords(values.segment<3>(kCustomB), scalar), values[kCustomRate]);
   }
 }
 
 class Custom : public Effect {
  public:
-  std::string name() const override { return "custom"; }
+  std::string name() const override { return kCustom; }
   EffectPicture Picture(const Eigen::VectorXd& values, const Setting& before) const override {
     EffectPicture picture;
+    picture.formula = true;
     const std::string c = CourseInWords(values, IsOfSprings(values));
     const Eigen::Vector3d x0 = before.system.position.rowwise().mean();
     switch (ActsOnOf(values)) {
@@ -225,7 +211,7 @@ class Custom : public Effect {
             {"b_z", -1e3, 1e3, 1}};
   }
   std::vector<Eigen::VectorXd> Starts(const SpringMassSystem&) const override {
-    Eigen::VectorXd start = Eigen::VectorXd::Zero(kTermValues);
+    Eigen::VectorXd start = Eigen::VectorXd::Zero(kCustomValues);
     start.head(3) << 0, static_cast<double>(InTime::kPeriodic), 6;
     return {start};
   }
@@ -242,7 +228,7 @@ class Custom : public Effect {
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
     if (!IsOfSprings(values)) return;
     constexpr double kDuration = 10;  // s, of a long recording
-    const double a = std::abs(values[3]), b = std::abs(values[6]);
+    const double a = std::abs(values[kCustomA]), b = std::abs(values[kCustomB]);
     const double grown = InTimeOf(values) == InTime::kSquare     ? kDuration * kDuration * a
                          : InTimeOf(values) == InTime::kGrowing  ? kDuration * a
                          : InTimeOf(values) == InTime::kPeriodic ? a + b

@@ -36,8 +36,9 @@ struct EffectPicture {
     double interval;   // s
   };
 
-  std::string lacks;  // completes "the twin lacks ...": "the drag of the air"
-  int amount = -1;    // the value that says how much of it; -1: none alone does
+  std::string lacks;     // completes "the twin lacks ...": "the drag of the air"
+  bool formula = false;  // `lacks` is a formula with the values that were found
+  int amount = -1;       // the value that says how much of it; -1: none alone does
   // Where it acts, if there is nothing to draw: completes "it acts ...".
   std::string where = "everywhere in the body";
   std::vector<Place> places;

@@ -12,6 +12,10 @@ namespace physpring {
 struct EffectValues {
   std::string name;
   Eigen::VectorXd values;
+
+  bool operator==(const EffectValues& other) const {
+    return name == other.name && values.size() == other.values.size() && values == other.values;
+  }
 };
 
 }  // namespace physpring

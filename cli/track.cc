@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring track: a twin and what is seen of its object -> where all of it is.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/message.h"
+#include "cli/option_values.h"
+#include "cli/output_files.h"
+#include "cli/warnings.h"
+#include "tracker/track_recording.h"
+#include "twin/npz.h"
+
+namespace physpring {
+namespace {
+
+struct TrackArguments {
+  std::string twin, recording, output;
+  TrackOptions options;
+  bool force = false;
+};
+
+// (T, particles, 3)
+NpzArray Frames(const std::vector<Points>& frames) {
+  std::vector<double> values;
+  for (const Points& frame : frames) {
+    values.insert(values.end(), frame.data(), frame.data() + frame.size());
+  }
+  return NpzArray::Floats({frames.size(), static_cast<std::size_t>(frames[0].cols()), 3},
+                          values.data());
+}
+
+void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
+  const TrackErrors& errors = motion.errors;
+  const auto print = [](const char* what, double metres) {
+    if (std::isfinite(metres)) fmt::print("  {:<42} {:>8.2f} mm\n", what, 1e3 * metres);
+  };
+  if (motion.hidden.empty()) {
+    fmt::print("no point was hidden, so nothing tells how good this is (--hide)\n");
+    return;
+  }
+  fmt::print("mean distance of {} points that were {}:\n", motion.hidden.size(),
+             arguments.options.cloud ? "measured, but not told" : "hidden");
+  print("tracked", errors.tracked);
+  print("predicted from frame 0, nothing measured", errors.predicted);
+  print("interpolated between those seen, no twin", errors.interpolated);
+}
+
+// A twin that tracks worse than what needs no measurement, or no twin, is of no use; nor is one
+// that is not where the cloud is.
+void WarnIfUseless(const TrackedMotion& motion) {
+  const TrackErrors& errors = motion.errors;
+  if (motion.cloud.distance > motion.cloud.spacing) {
+    PrintWarnings(
+        {fmt::format("it is lost: in the last second the cloud is {:.1f} mm from the "
+                     "nearest nodes, which are {:.1f} mm apart",
+                     1e3 * motion.cloud.distance, 1e3 * motion.cloud.spacing)});
+  }
+  if (errors.tracked > errors.predicted) {
+    PrintWarnings({"measurements make it worse than the prediction without any"});
+  }
+  if (errors.tracked > errors.interpolated) {
+    PrintWarnings({"interpolation without a twin is nearer"});
+  }
+}
+
+void Run(const TrackArguments& arguments) {
+  ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
+  ExpectNew(arguments.output, arguments.force);
+  const Twin twin = ReadTwin(arguments.twin);
+  const Recording recording = ReadRecording(arguments.recording);
+  PrintRemarks({&recording, 1});
+  const TrackedMotion motion = TrackRecording(twin, recording, arguments.options);
+  Npz arrays;
+  arrays["position"] = Frames(motion.position);
+  arrays["velocity"] = Frames(motion.velocity);
+  arrays["fps"] = NpzArray::Doubles({}, &recording.fps);
+  arrays["hidden"] = NpzArray::Ints({motion.hidden.size()}, motion.hidden.data());
+  WriteNpz(arrays, arguments.output);
+  fmt::print("{}: {} particles in {} frames, {:.0f} frames a second ({:.1f} x real time)\n",
+             arguments.output, motion.position[0].cols(), motion.position.size(),
+             motion.frames_per_second, motion.frames_per_second / recording.fps);
+  PrintErrors(arguments, motion);
+  WarnIfUseless(motion);
+}
+
+}  // namespace
+
+void AddTrackCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "track",
+      "Follows a twin's object through a recording that sees only a part of it, and writes where "
+      "all its particles are, and how fast.");
+  const auto arguments = std::make_shared<TrackArguments>();
+  command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
+  command->add_option("recording", arguments->recording, "recording")
+      ->required()
+      ->type_name("REC.npz");
+  command->add_option("-o,--output", arguments->output, "states to write")
+      ->required()
+      ->check(FileNameWith(".npz"))
+      ->type_name("STATES.npz");
+  command->add_flag("--cloud", arguments->options.cloud,
+                    "follow the recording's `surface`, points without names, and judge by its "
+                    "points");
+  command
+      ->add_option("--hide", arguments->options.hide,
+                   "hide this part of the points, and judge by them")
+      ->check(NumberBetween(0, 0.95))
+      ->type_name("PART");
+  AddSeed(command, &arguments->options.seed, "of the points that are hidden");
+  command->add_flag("--force", arguments->force, "overwrite a file");
+  command->callback([arguments] { Run(*arguments); });
+}
+
+}  // namespace physpring

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracker/track_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "tracker/tracker_bank.h"
+#include "twin/checks/motion_scale.h"
+#include "twin/error.h"
+#include "twin/neighbours.h"
+#include "twin/predict.h"
+#include "twin/recorded_input.h"
+#include "twin/rotation.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
+
+// The points that are not told: a part of them, drawn by the seed.
+std::vector<int> Hidden(const Recording& recording, const TrackOptions& options) {
+  std::vector<int> points(static_cast<std::size_t>(recording.point_count()));
+  std::iota(points.begin(), points.end(), 0);
+  if (options.cloud) return points;
+  std::mt19937_64 generator(options.seed);
+  for (std::size_t i = points.size(); i > 1; --i) std::swap(points[i - 1], points[generator() % i]);
+  points.resize(static_cast<std::size_t>(options.hide * static_cast<double>(points.size())));
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+FrameMeasurement MeasuredIn(const Recording& recording, std::size_t frame,
+                            const std::vector<int>& hidden, bool cloud) {
+  FrameMeasurement measured;
+  if (cloud) {
+    measured.cloud = recording.surface[frame];
+  } else {
+    measured.named = recording.points[frame];
+    for (int i : hidden) measured.named.col(i).setConstant(kNotSeen);
+  }
+  return measured;
+}
+
+// Points that go along with the nearest ones that are told in a frame, as a rigid body.
+class Interpolation {
+ public:
+  Interpolation(const Points& start, const std::vector<int>& points, const std::vector<int>& told)
+      : start_(start), points_(points), told_(told), search_(Points(start(Eigen::all, told))) {}
+
+  // 3 x start's columns; those that are not asked for are where they were at the start.
+  Points In(const Points& measured) const {
+    constexpr int kLooked = 24;
+    constexpr std::size_t kNearest = 8;
+    Points placed = start_;
+    for (int point : points_) {
+      std::vector<int> near;
+      for (const Neighbour& one : search_.Nearest(start_.col(point), kLooked)) {
+        const int i = told_[static_cast<std::size_t>(one.index)];
+        if (near.size() < kNearest && measured.col(i).allFinite()) near.push_back(i);
+      }
+      if (near.empty()) continue;
+      const Points from = start_(Eigen::all, near), to = measured(Eigen::all, near);
+      const Eigen::Vector3d centre = from.rowwise().mean(), moved = to.rowwise().mean();
+      const Eigen::Matrix3d turn = FitRotation(from.colwise() - centre, to.colwise() - moved);
+      placed.col(point) = moved + turn * (start_.col(point) - centre);
+    }
+    return placed;
+  }
+
+ private:
+  const Points& start_;
+  const std::vector<int>&points_, &told_;
+  NeighbourSearch search_;
+};
+
+// The mean distance of the points from where they were measured after frame 0; NaN without any.
+double ErrorOf(const std::vector<Points>& position, const Recording& recording,
+               const std::vector<int>& points) {
+  double sum = 0, count = 0;
+  for (std::size_t t = 1; t < position.size(); ++t) {
+    for (int i : points) {
+      const double distance = (position[t].col(i) - recording.points[t].col(i)).norm();
+      if (!std::isfinite(distance)) continue;
+      sum += distance;
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+double InterpolationError(const Recording& recording, const std::vector<int>& hidden) {
+  std::vector<int> told;
+  for (int i = 0; i < recording.point_count(); ++i) {
+    if (!std::binary_search(hidden.begin(), hidden.end(), i)) told.push_back(i);
+  }
+  if (told.empty() || hidden.empty()) return kNotSeen;
+  const Points start = recording.start.leftCols(recording.point_count());
+  const Interpolation interpolation(start, hidden, told);
+  std::vector<Points> placed;
+  for (const Points& measured : recording.points) placed.push_back(interpolation.In(measured));
+  return ErrorOf(placed, recording, hidden);
+}
+
+CloudFit FitOf(const std::vector<Points>& position, const Recording& recording) {
+  const std::size_t frames = position.size();
+  const std::size_t last_second =
+      std::min(frames - 1, static_cast<std::size_t>(std::ceil(recording.fps)));
+  double sum = 0, count = 0;
+  for (std::size_t t = frames - last_second; t < frames; ++t) {
+    const NeighbourSearch search(position[t]);
+    for (const auto& point : recording.surface[t].colwise()) {
+      if (!point.allFinite()) continue;
+      sum += search.Nearest(point, 1)[0].distance;
+      ++count;
+    }
+  }
+  const bool alone = position[0].cols() < 2;
+  return {count > 0 ? sum / count : 0, alone ? 0 : MedianSpacing(position[0])};
+}
+
+void ExpectSomethingToFollow(const Recording& recording, const TrackOptions& options) {
+  if (options.cloud && recording.surface.empty()) {
+    throw Error(fmt::format("recording {}: has no 'surface' to follow", recording.name));
+  }
+}
+
+}  // namespace
+
+TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
+                             const TrackOptions& options) {
+  ExpectSameObject(twin, recording);
+  ExpectSomethingToFollow(recording, options);
+  const TwinLevel& level = twin.levels[0];
+  const double noise = options.cloud ? 0 : std::max(1e-6, MeasurementNoise(recording.points));
+  TrackerBank tracker(
+      level.system, EnvironmentOf(recording),
+      {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0), twin.controller_velocity}, noise,
+      recording.start.leftCols(recording.particle_count()), recording.velocity);
+  TrackedMotion motion;
+  motion.hidden = Hidden(recording, options);
+  const double delay = ControllerDelay(level.system);
+  const auto begin = std::chrono::steady_clock::now();
+  motion.position.push_back(tracker.best().position());
+  motion.velocity.push_back(tracker.best().velocity());
+  for (int frame = 1; frame < recording.frame_count(); ++frame) {
+    tracker.Advance(
+        RecordedInput(recording, frame, delay),
+        MeasuredIn(recording, static_cast<std::size_t>(frame), motion.hidden, options.cloud));
+    motion.position.push_back(tracker.best().position());
+    motion.velocity.push_back(tracker.best().velocity());
+    if (motion.position.back().allFinite()) continue;
+    throw Error(fmt::format("recording {}: the tracked motion diverges in frame {}", recording.name,
+                            frame));
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  motion.frames_per_second = (recording.frame_count() - 1) / elapsed.count();
+  motion.errors = {ErrorOf(motion.position, recording, motion.hidden),
+                   ErrorOf(Predict(twin, 0, recording, {}), recording, motion.hidden),
+                   options.cloud ? kNotSeen : InterpolationError(recording, motion.hidden)};
+  if (options.cloud) motion.cloud = FitOf(motion.position, recording);
+  return motion;
+}
+
+}  // namespace physpring

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracker/tracker_bank.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace physpring {
+namespace {
+
+constexpr std::array<double, 4> kModelErrors = {0.05, 0.25, 1.2, 6};  // in the noise
+constexpr std::size_t kFirst = 1;  // the best as long as nothing is known
+constexpr double kMemory = 0.5;    // s, in which what was measured fades
+
+}  // namespace
+
+TrackerBank::TrackerBank(const SpringMassSystem& system, const Environment& environment,
+                         const SimulationOptions& simulation, double noise, const Points& nodes,
+                         const Points& velocity)
+    : fps_(1 / simulation.frame_time), surprise_(kModelErrors.size(), 0), best_(kFirst) {
+  for (double error : kModelErrors) {
+    trackers_.emplace_back(system, environment, simulation, TrackerOptions{noise, error}, nodes,
+                           velocity);
+  }
+}
+
+void TrackerBank::Advance(const FrameInput& input, const FrameMeasurement& measured) {
+  const double fade = std::exp(-1 / (kMemory * fps_));
+  for (std::size_t i = 0; i < trackers_.size(); ++i) {
+    trackers_[i].Advance(input, measured);
+    const double now = trackers_[i].surprise();  // infinite for good after a divergence
+    surprise_[i] = fade * surprise_[i] + (1 - fade) * now * now;
+  }
+  if (std::any_of(surprise_.begin(), surprise_.end(), [](double s) { return s > 0; })) {
+    best_ = static_cast<std::size_t>(std::min_element(surprise_.begin(), surprise_.end()) -
+                                     surprise_.begin());
+  }
+}
+
+}  // namespace physpring

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trackers that trust their model more or less, side by side. The state is that of the one that
+// has predicted best of late what was then measured. How good a model is need not be known, and
+// may change.
+//   Magill, Optimal adaptive estimation of sampled stochastic processes, IEEE Trans. Autom. Control
+//   10 (1965).
+#ifndef PHYSPRING_TRACKER_TRACKER_BANK_H_
+#define PHYSPRING_TRACKER_TRACKER_BANK_H_
+
+#include <vector>
+
+#include "tracker/state_tracker.h"
+
+namespace physpring {
+
+class TrackerBank {
+ public:
+  // As of StateTracker. `noise`: standard deviation of a measured coordinate, m; a cloud needs
+  // none.
+  TrackerBank(const SpringMassSystem& system, const Environment& environment,
+              const SimulationOptions& simulation, double noise, const Points& nodes,
+              const Points& velocity);
+
+  // Goes on by one frame.
+  void Advance(const FrameInput& input, const FrameMeasurement& measured);
+
+  // The one whose state is the best.
+  const StateTracker& best() const { return trackers_[best_]; }
+
+ private:
+  double fps_;
+  std::vector<StateTracker> trackers_;
+  std::vector<double> surprise_;  // (trackers): mean square of late, m^2
+  std::size_t best_;
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TRACKER_TRACKER_BANK_H_
