@@ -52,6 +52,7 @@ void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
 // A twin that tracks worse than what needs no measurement, or no twin, is of no use; nor is one
 // that is not where the cloud is.
 void WarnIfUseless(const TrackedMotion& motion) {
+  constexpr double kWorse = 1.1;
   const TrackErrors& errors = motion.errors;
   if (motion.cloud.distance > motion.cloud.spacing) {
     PrintWarnings(
@@ -59,10 +60,10 @@ void WarnIfUseless(const TrackedMotion& motion) {
                      "nearest nodes, which are {:.1f} mm apart",
                      1e3 * motion.cloud.distance, 1e3 * motion.cloud.spacing)});
   }
-  if (errors.tracked > errors.predicted) {
+  if (errors.tracked > kWorse * errors.predicted) {
     PrintWarnings({"measurements make it worse than the prediction without any"});
   }
-  if (errors.tracked > errors.interpolated) {
+  if (errors.tracked > kWorse * errors.interpolated) {
     PrintWarnings({"interpolation without a twin is nearer"});
   }
 }
@@ -110,6 +111,7 @@ void AddTrackCommand(CLI::App& app) {
       ->add_option("--hide", arguments->options.hide,
                    "hide this part of the points, and judge by them")
       ->check(NumberBetween(0, 0.95))
+      ->excludes("--cloud")
       ->type_name("PART");
   AddSeed(command, &arguments->options.seed, "of the points that are hidden");
   command->add_flag("--force", arguments->force, "overwrite a file");

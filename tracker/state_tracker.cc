@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tracker/soft_match.h"
 #include "twin/neighbours.h"
 
 namespace physpring {
@@ -46,43 +47,61 @@ void StateTracker::Advance(const FrameInput& input, const FrameMeasurement& meas
   Move(moved, gain_ / (2 - gain_));  // Benedict and Bordner's choice, of the gain that it has
 }
 
-Points StateTracker::Correct(const FrameMeasurement& measured) {
-  const Points& from = predicted_;
-  const Eigen::Index nodes = from.cols(), named = std::min(nodes, measured.named.cols());
-  Eigen::VectorXd of_named = Eigen::VectorXd::Zero(nodes);
-  Points named_offset = Points::Zero(3, nodes);
-  for (Eigen::Index i = 0; i < named; ++i) {
-    if (!measured.named.col(i).allFinite()) continue;
-    of_named[i] = 1 / (options_.noise * options_.noise);
-    named_offset.col(i) = measured.named.col(i) - from.col(i);
+StateTracker::Pull StateTracker::PullOfNamed(const Points& named) const {
+  const Eigen::Index nodes = predicted_.cols();
+  Pull pull{Points::Zero(3, nodes), Eigen::VectorXd::Zero(nodes)};
+  for (Eigen::Index i = 0; i < std::min(nodes, named.cols()); ++i) {
+    if (!named.col(i).allFinite()) continue;
+    pull.offset.col(i) = named.col(i) - predicted_.col(i);
+    pull.precision[i] = 1 / (options_.noise * options_.noise);
   }
-  Points offset = named_offset, moved = Points::Zero(3, nodes);
-  Eigen::VectorXd precision = of_named;
-  const bool has_cloud = measured.cloud.cols() > 0;
-  if (!has_cloud)
-    moved = correction_.Solve(offset, precision, options_.model_error * options_.noise);
-  for (double width = std::clamp(kSurprise * surprise_, width_ / kNarrower, kWidest * width_);
-       has_cloud && width >= width_;
-       width = width > width_ ? std::max(width_, kNarrower * width) : 0) {
-    match_ = MatchSoftly(from + moved, measured.cloud, width, kNone);
-    const Eigen::VectorXd of_cloud = match_.count / (width * width);
-    precision = of_named + of_cloud;
-    offset = named_offset * of_named.asDiagonal() + (match_.target - from) * of_cloud.asDiagonal();
-    for (Eigen::Index i = 0; i < nodes; ++i) {
-      if (precision[i] > 0) offset.col(i) /= precision[i];
-    }
-    moved = correction_.Solve(offset, precision, options_.model_error * width_);
-  }
-  Judge(offset, precision, moved);
-  return moved;
+  return pull;
 }
 
-void StateTracker::Judge(const Points& offset, const Eigen::VectorXd& precision,
-                         const Points& moved) {
-  const Points weighted = offset * precision.asDiagonal();
-  const double all = weighted.cwiseProduct(offset).sum();
+void StateTracker::AddCloud(const Points& cloud, const Points& moved, double width,
+                            Pull* pull) const {
+  const SoftMatch match = MatchSoftly(predicted_ + moved, cloud, width, kNone);
+  for (Eigen::Index i = 0; i < predicted_.cols(); ++i) {
+    if (!(match.count[i] > 0)) continue;
+    const double precision = match.count[i] / (width * width);
+    const Eigen::Vector3d offset = match.target.col(i) - predicted_.col(i);
+    const double both = pull->precision[i] + precision;
+    pull->offset.col(i) += precision / both * (offset - pull->offset.col(i));
+    pull->precision[i] = both;
+  }
+  pull->unmatched = cloud.row(0).array().isFinite().count() - match.count.sum();
+}
+
+Points StateTracker::Correct(const FrameMeasurement& measured) {
+  const Pull named = PullOfNamed(measured.named);
+  const bool has_cloud = measured.cloud.array().isFinite().any();
+  const double unit = has_cloud ? width_ : options_.noise;
+  if (!has_cloud) {
+    const Points moved =
+        correction_.Solve(named.offset, named.precision, options_.model_error * unit);
+    Judge(named, moved, unit);
+    return moved;
+  }
+  Points moved = Points::Zero(3, predicted_.cols());
+  double width = std::clamp(kSurprise * surprise_, width_ / kNarrower, kWidest * width_);
+  for (;; width = std::max(width_, kNarrower * width)) {
+    Pull pull = named;
+    AddCloud(measured.cloud, moved, width, &pull);
+    moved = correction_.Solve(pull.offset, pull.precision, options_.model_error * unit);
+    if (width > width_) continue;
+    Judge(pull, moved, unit);
+    return moved;
+  }
+}
+
+void StateTracker::Judge(const Pull& pull, const Points& moved, double unit) {
+  const Points weighted = pull.offset * pull.precision.asDiagonal();
+  const double all = weighted.cwiseProduct(pull.offset).sum();
   gain_ = all > 0 ? std::clamp(weighted.cwiseProduct(moved).sum() / all, 0.0, 1.0) : 0;
-  surprise_ = all > 0 ? std::sqrt(all / precision.sum() / 3) : 0;
+  const double measured = pull.precision.sum() * unit * unit + pull.unmatched;  // how many
+  if (!(measured > 0)) return;
+  const double square = all + pull.unmatched * kWidest * kWidest;  // in units
+  surprise_ = unit * std::sqrt(square / measured / 3);
 }
 
 void StateTracker::Move(const Points& displacement, double velocity_gain) {

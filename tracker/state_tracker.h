@@ -12,7 +12,6 @@
 #include <limits>
 
 #include "tracker/smooth_correction.h"
-#include "tracker/soft_match.h"
 #include "twin/simulator.h"
 
 namespace physpring {
@@ -42,18 +41,24 @@ class StateTracker {
 
   const Points& position() const { return position_; }               // 3 x nodes, m, corrected
   Points velocity() const { return simulator_.Velocities(state_); }  // 3 x nodes, m/s
-  const Points& predicted() const { return predicted_; }             // before the correction
-  // Of the last frame's cloud, matched to the corrected nodes.
-  const SoftMatch& match() const { return match_; }
-  // How far the last frame's measurements were from their prediction, root mean square of a
-  // coordinate, m; infinite before the first frame and after a divergence, 0 if nothing was
-  // measured.
+  // How far the measurements of the last frame that had any were from their prediction, root mean
+  // square of a coordinate, m; infinite before it and after a divergence. A point of a cloud that
+  // belongs to no node counts as far.
   double surprise() const { return surprise_; }
 
  private:
+  // What pulls at the nodes: from where they are predicted to where, 3 x nodes, m, and how
+  // precisely that is known, (nodes), 1/m^2.
+  struct Pull {
+    Points offset;
+    Eigen::VectorXd precision;
+    double unmatched = 0;  // points of a cloud that belong to no node
+  };
+  Pull PullOfNamed(const Points& named) const;
+  void AddCloud(const Points& cloud, const Points& moved, double width, Pull* pull) const;
   // The displacements of the nodes from where they are predicted.
   Points Correct(const FrameMeasurement& measured);
-  void Judge(const Points& offset, const Eigen::VectorXd& precision, const Points& moved);
+  void Judge(const Pull& pull, const Points& moved, double unit);
   void Move(const Points& displacement, double velocity_gain);
 
   TrackerOptions options_;
@@ -64,7 +69,6 @@ class StateTracker {
   double width_;  // of a match, m
   NodeStates<double> state_;
   Points position_, predicted_;
-  SoftMatch match_;
   // of the last correction: the part of what was measured that it took, and how far that was
   double gain_ = 1, surprise_ = std::numeric_limits<double>::infinity();
 };

@@ -94,6 +94,17 @@ double ErrorOf(const std::vector<Points>& position, const Recording& recording,
   return sum / count;
 }
 
+// Of a motion that diverges without measurements, none.
+double PredictionError(const Twin& twin, const Recording& recording,
+                       const std::vector<int>& hidden) {
+  if (hidden.empty()) return kNotSeen;
+  try {
+    return ErrorOf(Predict(twin, 0, recording, {}), recording, hidden);
+  } catch (const Error&) {
+    return kNotSeen;
+  }
+}
+
 double InterpolationError(const Recording& recording, const std::vector<int>& hidden) {
   std::vector<int> told;
   for (int i = 0; i < recording.point_count(); ++i) {
@@ -161,7 +172,7 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   motion.frames_per_second = (recording.frame_count() - 1) / elapsed.count();
   motion.errors = {ErrorOf(motion.position, recording, motion.hidden),
-                   ErrorOf(Predict(twin, 0, recording, {}), recording, motion.hidden),
+                   PredictionError(twin, recording, motion.hidden),
                    options.cloud ? kNotSeen : InterpolationError(recording, motion.hidden)};
   if (options.cloud) motion.cloud = FitOf(motion.position, recording);
   return motion;

@@ -28,13 +28,15 @@ void TrackerBank::Advance(const FrameInput& input, const FrameMeasurement& measu
   const double fade = std::exp(-1 / (kMemory * fps_));
   for (std::size_t i = 0; i < trackers_.size(); ++i) {
     trackers_[i].Advance(input, measured);
-    const double now = trackers_[i].surprise();  // infinite for good after a divergence
-    surprise_[i] = fade * surprise_[i] + (1 - fade) * now * now;
+    const double now = trackers_[i].surprise();
+    const bool diverged = !trackers_[i].position().allFinite();
+    if (std::isfinite(now) || diverged) {  // else nothing was ever measured
+      surprise_[i] = fade * surprise_[i] + (1 - fade) * now * now;
+    }
   }
-  if (std::any_of(surprise_.begin(), surprise_.end(), [](double s) { return s > 0; })) {
-    best_ = static_cast<std::size_t>(std::min_element(surprise_.begin(), surprise_.end()) -
-                                     surprise_.begin());
-  }
+  const auto least = std::min_element(surprise_.begin(), surprise_.end());
+  if (*least > 0 && std::isfinite(*least))
+    best_ = static_cast<std::size_t>(least - surprise_.begin());
 }
 
 }  // namespace physpring
