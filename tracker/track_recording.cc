@@ -35,16 +35,27 @@ std::vector<int> Hidden(const Recording& recording, const TrackOptions& options)
   return points;
 }
 
-FrameMeasurement MeasuredIn(const Recording& recording, std::size_t frame,
-                            const std::vector<int>& hidden, bool cloud) {
-  FrameMeasurement measured;
-  if (cloud) {
-    measured.cloud = recording.surface[frame];
-  } else {
-    measured.named = recording.points[frame];
-    for (int i : hidden) measured.named.col(i).setConstant(kNotSeen);
+// What is told of each frame: the cloud, or the points but the hidden ones.
+std::vector<FrameMeasurement> ToldOf(const Recording& recording, const std::vector<int>& hidden,
+                                     bool cloud) {
+  std::vector<FrameMeasurement> told(recording.points.size());
+  for (std::size_t t = 0; t < told.size(); ++t) {
+    if (cloud) {
+      told[t].cloud = recording.surface[t];
+      continue;
+    }
+    told[t].named = recording.points[t];
+    for (int i : hidden) told[t].named.col(i).setConstant(kNotSeen);
   }
-  return measured;
+  return told;
+}
+
+// Standard deviation of a measured coordinate, m; 0 of clouds, whose tracker needs none.
+double NoiseOf(const std::vector<FrameMeasurement>& told) {
+  constexpr double kLeast = 1e-6;
+  std::vector<Points> named;
+  for (const FrameMeasurement& frame : told) named.push_back(frame.named);
+  return named[0].cols() > 0 ? std::max(kLeast, MeasurementNoise(named)) : 0;
 }
 
 // Points that go along with the nearest ones that are told in a frame, as a rigid body.
@@ -148,21 +159,19 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   ExpectSameObject(twin, recording);
   ExpectSomethingToFollow(recording, options);
   const TwinLevel& level = twin.levels[0];
-  const double noise = options.cloud ? 0 : std::max(1e-6, MeasurementNoise(recording.points));
-  TrackerBank tracker(
-      level.system, EnvironmentOf(recording),
-      {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0), twin.controller_velocity}, noise,
-      recording.start.leftCols(recording.particle_count()), recording.velocity);
   TrackedMotion motion;
   motion.hidden = Hidden(recording, options);
+  const std::vector<FrameMeasurement> told = ToldOf(recording, motion.hidden, options.cloud);
+  TrackerBank tracker(
+      level.system, EnvironmentOf(recording),
+      {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0), twin.controller_velocity},
+      NoiseOf(told), recording.start.leftCols(recording.particle_count()), recording.velocity);
   const double delay = ControllerDelay(level.system);
   const auto begin = std::chrono::steady_clock::now();
   motion.position.push_back(tracker.best().position());
   motion.velocity.push_back(tracker.best().velocity());
   for (int frame = 1; frame < recording.frame_count(); ++frame) {
-    tracker.Advance(
-        RecordedInput(recording, frame, delay),
-        MeasuredIn(recording, static_cast<std::size_t>(frame), motion.hidden, options.cloud));
+    tracker.Advance(RecordedInput(recording, frame, delay), told[static_cast<std::size_t>(frame)]);
     motion.position.push_back(tracker.best().position());
     motion.velocity.push_back(tracker.best().velocity());
     if (motion.position.back().allFinite()) continue;

@@ -60,7 +60,7 @@ TEST(SmoothCorrection, TrustsAGoodModelMore) {
   const Eigen::VectorXd precision = Eigen::VectorXd::Unit(6, 3) * 1e6;  // noise of 1 mm
   const Points offset = Offset(6, 3, {0, 0.02, 0});
   const double bad = correction.Solve(offset, precision, 1)(1, 3);
-  const double good = correction.Solve(offset, precision, 1e-4)(1, 3);
+  const double good = correction.Solve(offset, precision, 1e-5)(1, 3);
   EXPECT_NEAR(bad, 0.02, 1e-4);
   EXPECT_LT(good, 0.2 * bad);
 }
