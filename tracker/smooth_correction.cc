@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kModes = 48;
+constexpr int kModes = 96;
 
 // Of the free nodes; its mean diagonal is 1.
 Eigen::SparseMatrix<double> StiffnessLaplacian(const SpringMassSystem& system) {
