@@ -4,8 +4,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 
@@ -14,7 +12,6 @@
 #include "diagnosis/law_term.h"
 #include "trainer/solvers/levenberg_marquardt.h"
 #include "trainer/solvers/parallel.h"
-#include "twin/effects/registry.h"
 
 namespace physpring {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tracker/soft_match.h"
 #include "twin/neighbours.h"
@@ -20,14 +21,16 @@ constexpr double kNone = 0.05;  // soft_match.h
 
 }  // namespace
 
-StateTracker::StateTracker(const SpringMassSystem& system, const Environment& environment,
-                           const SimulationOptions& simulation, const TrackerOptions& options,
-                           const Points& nodes, const Points& velocity)
+StateTracker::StateTracker(const SpringMassSystem& system,
+                           std::shared_ptr<const SmoothCorrection> correction,
+                           const Environment& environment, const SimulationOptions& simulation,
+                           const TrackerOptions& options, const Points& nodes,
+                           const Points& velocity)
     : options_(options),
       fps_(1 / simulation.frame_time),
       simulator_(system, environment, simulation),
       workspace_(simulator_),
-      correction_(system),
+      correction_(std::move(correction)),
       state_(simulator_.MakeState(nodes, velocity)),
       position_(nodes),
       predicted_(nodes) {
@@ -78,7 +81,7 @@ Points StateTracker::Correct(const FrameMeasurement& measured) {
   const double unit = has_cloud ? width_ : options_.noise;
   if (!has_cloud) {
     const Points moved =
-        correction_.Solve(named.offset, named.precision, options_.model_error * unit);
+        correction_->Solve(named.offset, named.precision, options_.model_error * unit);
     Judge(named, moved, unit);
     return moved;
   }
@@ -87,7 +90,7 @@ Points StateTracker::Correct(const FrameMeasurement& measured) {
   for (;; width = std::max(width_, kNarrower * width)) {
     Pull pull = named;
     AddCloud(measured.cloud, moved, width, &pull);
-    moved = correction_.Solve(pull.offset, pull.precision, options_.model_error * unit);
+    moved = correction_->Solve(pull.offset, pull.precision, options_.model_error * unit);
     if (width > width_) continue;
     Judge(pull, moved, unit);
     return moved;

@@ -10,6 +10,7 @@
 #define PHYSPRING_TRACKER_STATE_TRACKER_H_
 
 #include <limits>
+#include <memory>
 
 #include "tracker/smooth_correction.h"
 #include "twin/simulator.h"
@@ -31,10 +32,11 @@ struct TrackerOptions {
 
 class StateTracker {
  public:
-  // `nodes`: where the nodes are at first, 3 x nodes, m. `simulation.frame_time`: of a frame, s.
-  StateTracker(const SpringMassSystem& system, const Environment& environment,
-               const SimulationOptions& simulation, const TrackerOptions& options,
-               const Points& nodes, const Points& velocity);
+  // `correction`: that of the system. `nodes`: where the nodes are at first, 3 x nodes, m.
+  // `simulation.frame_time`: of a frame, s.
+  StateTracker(const SpringMassSystem& system, std::shared_ptr<const SmoothCorrection> correction,
+               const Environment& environment, const SimulationOptions& simulation,
+               const TrackerOptions& options, const Points& nodes, const Points& velocity);
 
   // Goes on by one frame. A motion that diverges is not finite from then on.
   void Advance(const FrameInput& input, const FrameMeasurement& measured);
@@ -65,7 +67,7 @@ class StateTracker {
   double fps_;
   Simulator<double> simulator_;
   Simulator<double>::Workspace workspace_;
-  SmoothCorrection correction_;
+  std::shared_ptr<const SmoothCorrection> correction_;
   double width_;  // of a match, m
   NodeStates<double> state_;
   Points position_, predicted_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 namespace physpring {
 namespace {
@@ -18,9 +19,10 @@ TrackerBank::TrackerBank(const SpringMassSystem& system, const Environment& envi
                          const SimulationOptions& simulation, double noise, const Points& nodes,
                          const Points& velocity)
     : fps_(1 / simulation.frame_time), surprise_(kModelErrors.size(), 0), best_(kFirst) {
+  const auto correction = std::make_shared<const SmoothCorrection>(system);
   for (double error : kModelErrors) {
-    trackers_.emplace_back(system, environment, simulation, TrackerOptions{noise, error}, nodes,
-                           velocity);
+    trackers_.emplace_back(system, correction, environment, simulation,
+                           TrackerOptions{noise, error}, nodes, velocity);
   }
 }
 
