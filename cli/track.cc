@@ -12,7 +12,7 @@
 #include "cli/output_files.h"
 #include "cli/warnings.h"
 #include "tracker/track_recording.h"
-#include "twin/npz.h"
+#include "twin/npz_fields.h"
 
 namespace physpring {
 namespace {
@@ -22,16 +22,6 @@ struct TrackArguments {
   TrackOptions options;
   bool force = false;
 };
-
-// (T, particles, 3)
-NpzArray Frames(const std::vector<Points>& frames) {
-  std::vector<double> values;
-  for (const Points& frame : frames) {
-    values.insert(values.end(), frame.data(), frame.data() + frame.size());
-  }
-  return NpzArray::Floats({frames.size(), static_cast<std::size_t>(frames[0].cols()), 3},
-                          values.data());
-}
 
 void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
   const TrackErrors& errors = motion.errors;
@@ -76,8 +66,8 @@ void Run(const TrackArguments& arguments) {
   PrintRemarks({&recording, 1});
   const TrackedMotion motion = TrackRecording(twin, recording, arguments.options);
   Npz arrays;
-  arrays["position"] = Frames(motion.position);
-  arrays["velocity"] = Frames(motion.velocity);
+  arrays["position"] = StoreFrames(motion.position);
+  arrays["velocity"] = StoreFrames(motion.velocity);
   arrays["fps"] = NpzArray::Doubles({}, &recording.fps);
   arrays["hidden"] = NpzArray::Ints({motion.hidden.size()}, motion.hidden.data());
   WriteNpz(arrays, arguments.output);

@@ -11,7 +11,7 @@
 
 #include "twin/atomic_file.h"
 #include "twin/error.h"
-#include "twin/npz.h"
+#include "twin/npz_fields.h"
 
 namespace physpring {
 namespace {
@@ -151,14 +151,7 @@ void AddRows(const std::vector<Row>& rows, Json* json) {
 Npz TrajectoryOf(const EvaluatedRecording& evaluated) {
   Npz arrays;
   for (const LevelResult& level : evaluated.result.levels) {
-    std::vector<double> values;
-    for (const Points& frame : level.points) {
-      values.insert(values.end(), frame.data(), frame.data() + frame.size());
-    }
-    const auto frames = level.points.size();
-    const auto points = static_cast<std::size_t>(level.points[0].cols());
-    arrays[fmt::format("level{}/points", level.level)] =
-        NpzArray::Floats({frames, points, 3}, values.data());
+    arrays[fmt::format("level{}/points", level.level)] = StoreFrames(level.points);
   }
   return arrays;
 }

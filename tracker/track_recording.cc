@@ -76,10 +76,8 @@ class Interpolation {
         if (near.size() < kNearest && measured.col(i).allFinite()) near.push_back(i);
       }
       if (near.empty()) continue;
-      const Points from = start_(Eigen::all, near), to = measured(Eigen::all, near);
-      const Eigen::Vector3d centre = from.rowwise().mean(), moved = to.rowwise().mean();
-      const Eigen::Matrix3d turn = FitRotation(from.colwise() - centre, to.colwise() - moved);
-      placed.col(point) = moved + turn * (start_.col(point) - centre);
+      placed.col(point) =
+          MoveRigidly(start_(Eigen::all, near), measured(Eigen::all, near), start_.col(point));
     }
     return placed;
   }

@@ -4,18 +4,6 @@
 #include "twin/rotation.h"
 
 namespace physpring {
-namespace {
-
-// `points` moved as the controllers moved from frame 0 to `frame`.
-Points MoveRigidly(const Recording& recording, int frame, const Points& points) {
-  const Points& from = recording.controllers[0];
-  const Points& to = recording.controllers[frame];
-  const Eigen::Vector3d old_centre = from.rowwise().mean(), centre = to.rowwise().mean();
-  const Eigen::Matrix3d turn = FitRotation(from.colwise() - old_centre, to.colwise() - centre);
-  return (turn * (points.colwise() - old_centre)).colwise() + centre;
-}
-
-}  // namespace
 
 std::vector<Baseline> PredictBaselines(const Recording& recording, const LinearPredictor& linear) {
   const Points start = recording.start.leftCols(recording.particle_count());
@@ -26,7 +14,10 @@ std::vector<Baseline> PredictBaselines(const Recording& recording, const LinearP
   if (recording.controller_count() == 0) return baselines;
 
   Baseline rigid{"rigid", "a rigid body that goes with the controllers", {}};
-  for (int t = 0; t < frames; ++t) rigid.particles.push_back(MoveRigidly(recording, t, start));
+  for (int t = 0; t < frames; ++t) {
+    rigid.particles.push_back(
+        MoveRigidly(recording.controllers[0], recording.controllers[t], start));
+  }
   if (!linear.empty()) {
     Baseline regression{"linear", "a linear regression on the controllers", rigid.particles};
     const std::vector<Points> points = PredictLinearly(linear, recording);

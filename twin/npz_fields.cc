@@ -200,4 +200,15 @@ void NpzFields::ExpectWithinReach(const std::string& name, const double* coordin
                          *far, FormatIndex(place, Get(name).shape), kFarthest));
 }
 
+NpzArray StoreFrames(const std::vector<Points>& frames) {
+  const Eigen::Index columns = frames.empty() ? 0 : frames[0].cols();
+  std::vector<double> values;
+  values.reserve(frames.size() * ExtentOf(3 * columns));
+  for (const Points& frame : frames) {
+    if (frame.cols() != columns) throw Error("frames differ in their number of points");
+    values.insert(values.end(), frame.data(), frame.data() + frame.size());
+  }
+  return NpzArray::Floats({frames.size(), ExtentOf(columns), 3}, values.data());
+}
+
 }  // namespace physpring

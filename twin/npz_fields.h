@@ -77,6 +77,10 @@ class NpzFields {
   std::map<std::string, std::size_t> extents_;
 };
 
+// The frames (T of 3 x columns, m) as an array (T, columns, 3) of floats: what Frames reads. Throws
+// Error if they differ in their number of columns.
+NpzArray StoreFrames(const std::vector<Points>& frames);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_NPZ_FIELDS_H_

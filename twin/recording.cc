@@ -226,18 +226,6 @@ Recording ReadArrays(const Npz& arrays, const std::string& path) {
   return recording;
 }
 
-// (T, columns, 3)
-NpzArray StoreFrames(const std::vector<Points>& frames) {
-  const Eigen::Index columns = frames.empty() ? 0 : frames[0].cols();
-  std::vector<double> values;
-  values.reserve(frames.size() * ExtentOf(3 * columns));
-  for (const Points& frame : frames) {
-    if (frame.cols() != columns) throw Error("frames differ in their number of points");
-    values.insert(values.end(), frame.data(), frame.data() + frame.size());
-  }
-  return NpzArray::Floats({frames.size(), ExtentOf(columns), 3}, values.data());
-}
-
 // (columns, 3)
 NpzArray StorePositions(const Points& positions) {
   return NpzArray::Floats({ExtentOf(positions.cols()), 3}, positions.data());

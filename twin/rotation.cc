@@ -88,6 +88,12 @@ Eigen::Matrix3d FitRotation(const Points& from, const Points& to) {
   return RotationSteps(from, to).rotation[RotationSteps::kSteps];
 }
 
+Points MoveRigidly(const Points& from, const Points& to, const Points& points) {
+  const Eigen::Vector3d old_centre = from.rowwise().mean(), centre = to.rowwise().mean();
+  const Eigen::Matrix3d turn = FitRotation(from.colwise() - old_centre, to.colwise() - centre);
+  return (turn * (points.colwise() - old_centre)).colwise() + centre;
+}
+
 void AddFitRotationAdjoint(const Points& from, const Points& to,
                            const Eigen::Matrix3d& rotation_bar, Points* to_bar) {
   const RotationSteps steps(from, to);

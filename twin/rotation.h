@@ -13,6 +13,10 @@ namespace physpring {
 // What the columns leave open (the twist about a straight line) is turned as little as possible.
 Eigen::Matrix3d FitRotation(const Points& from, const Points& to);
 
+// `points` (3 x any number), moved as the rigid body whose columns go from `from` to `to` does, as
+// nearly as one can: about the means, turned by FitRotation.
+Points MoveRigidly(const Points& from, const Points& to, const Points& points);
+
 // Adds to `to_bar` the derivative of a loss with respect to `to`, rotation_bar being the one with
 // respect to FitRotation(from, to).
 void AddFitRotationAdjoint(const Points& from, const Points& to,

@@ -42,12 +42,7 @@ std::vector<Eigen::Index> NearestKnown(const Points& shape, const Points& start,
 Eigen::Vector3d MoveWithNeighbours(const Points& shape, const Points& start, Eigen::Index i) {
   const std::vector<Eigen::Index> neighbours = NearestKnown(shape, start, i);
   if (neighbours.empty()) return shape.col(i);
-  const Points from = shape(Eigen::all, neighbours);
-  const Points to = start(Eigen::all, neighbours);
-  const Eigen::Vector3d from_mean = from.rowwise().mean();
-  const Eigen::Vector3d to_mean = to.rowwise().mean();
-  const Eigen::Matrix3d rotation = FitRotation(from.colwise() - from_mean, to.colwise() - to_mean);
-  return to_mean + rotation * (shape.col(i) - from_mean);
+  return MoveRigidly(shape(Eigen::all, neighbours), start(Eigen::all, neighbours), shape.col(i));
 }
 
 std::size_t FirstFrameThatSees(const Recording& recording, Eigen::Index point) {
