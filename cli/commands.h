@@ -19,6 +19,7 @@ void AddRolloutCommand(CLI::App& app);
 void AddMergeCommand(CLI::App& app);
 void AddInfoCommand(CLI::App& app);
 void AddInteriorCommand(CLI::App& app);
+void AddRegisterCommand(CLI::App& app);
 void AddDoctorCommand(CLI::App& app);
 
 }  // namespace physpring

@@ -30,6 +30,7 @@
 #include "report/diagnosis_text.h"
 #include "trainer/data/fit_data.h"
 #include "twin/atomic_file.h"
+#include "twin/clock_offset.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/numbering.h"
@@ -68,7 +69,7 @@ std::vector<Recording> RecordingsBefore(const DiagnoseArguments& arguments, cons
                                         const FitData& data, const std::vector<Recording>& judged) {
   std::vector<Recording> before;
   for (const RecordingEntry& entry : ListRecordings(arguments.before, Role::kFit)) {
-    before.push_back(ReadRecording(entry.path));
+    before.push_back(ReadRecordingFor(twin, entry.path));
     for (const auto* others : {&data.recordings, &judged}) {
       ExpectNotAmong(*others, before.back(), entry.path, "to diagnose",
                      "it is from before the change or from after it");
@@ -90,6 +91,7 @@ std::vector<Recording> RecordingsBefore(const DiagnoseArguments& arguments, cons
 
 // A recording may declare another mass than the twin has; what it weighs shows in its motion alone.
 void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
+  if (twin.force_scale) return;    // it was weighed by forces
   constexpr double kAlike = 0.01;  // masses are alike that differ by this part of the twin's
   const double mass = twin.levels[0].system.mass.sum();
   for (const auto* recordings : {&chosen.fit, &chosen.held_out}) {
@@ -180,15 +182,16 @@ void Run(const DiagnoseArguments& arguments) {
   const Twin twin = ReadTwin(arguments.twin);
   const auto fit = ListRecordings(arguments.recordings, Role::kFit);
   const auto held_out = ListRecordings(arguments.held_out, Role::kHeldout);
-  FitData data = ReadFitData(fit);
+  FitData data = ByClockOf(twin, ReadFitData(fit));
   std::vector<Recording> judged;
   for (const RecordingEntry& entry : held_out) {
-    judged.push_back(ReadRecording(entry.path));
+    judged.push_back(ReadRecordingFor(twin, entry.path));
     ExpectNotAmong(data.recordings, judged.back(), entry.path, "to fit", "it cannot judge them");
   }
   std::vector<Recording> before = RecordingsBefore(arguments, twin, data, judged);
   for (std::vector<Recording>* recordings : {&data.recordings, &judged, &before}) {
     for (Recording& recording : *recordings) {
+      ExpectLastingGrasps(recording, "diagnosed");
       WarnOfOddNumbering(twin, recording.name, &recording);
     }
     PrintRemarks(*recordings);

@@ -20,6 +20,7 @@
 #include "report/picture/page.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/atomic_file.h"
+#include "twin/clock_offset.h"
 #include "twin/dataset.h"
 #include "twin/numbering.h"
 
@@ -42,13 +43,25 @@ CLI::Validator EndsWithHtml() {
       "");
 }
 
+// A grasp takes hold where it begins, at the distances of that moment; the twin knows those of the
+// recordings that it was trained on.
+void WarnOfLateGrasps(const Twin& twin, const std::string& path, Recording* recording) {
+  if (recording->held.size() == 0 || recording->held.row(0).all()) return;
+  if (twin.TrainingOn(recording->hash)) return;
+  recording->warnings.push_back(
+      path +
+      ": grasps that begin late take hold at the distances that they had in the training; what is "
+      "predicted after them is uncertain");
+}
+
 EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
                                 const PredictOptions& options) {
   EvaluatedRecording evaluated;
   evaluated.path = entry.path;
-  evaluated.recording = ReadRecording(entry.path);
+  evaluated.recording = ReadRecordingFor(twin, entry.path);
   evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
   WarnOfOddNumbering(twin, entry.path, &evaluated.recording);
+  WarnOfLateGrasps(twin, entry.path, &evaluated.recording);
   evaluated.result = Evaluate(twin, evaluated.recording, options);
   return evaluated;
 }

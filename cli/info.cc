@@ -25,7 +25,7 @@ struct Kind {
 // Holds the arrays no longer than it looks at them.
 Kind KindOf(const std::string& path) {
   const Npz arrays = ReadNpz(path);
-  return {arrays.contains("meta"), arrays.contains("points")};
+  return {arrays.contains("meta"), arrays.contains("points") || arrays.contains("surface")};
 }
 
 // Prints what `path` holds and returns it as JSON.
@@ -41,13 +41,14 @@ Json Inspect(const std::string& path) {
     return json;
   }
   if (kind.is_recording) {
-    const Recording recording = ReadRecording(path);
+    const Recording recording = ReadRecordingOrClouds(path);
     fmt::print("{}: a recording\n{}", path, DescribeRecording(recording));
     PrintRemarks({&recording, 1});
     return RecordingToJson(recording);
   }
   throw Error(fmt::format(
-      "{}: has neither an array 'points' as a recording nor an array 'meta' as a twin", path));
+      "{}: has neither an array 'points' or 'surface' as a recording nor an array 'meta' as a twin",
+      path));
 }
 
 }  // namespace

@@ -138,6 +138,7 @@ void Run(const ReplayArguments& arguments) {
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
   const Recording recording = ReadRecording(arguments.recording);
+  ExpectLastingGrasps(recording, "replayed in MuJoCo");
   PrintRemarks({&recording, 1});
   ControllerReplay replay;
   try {

@@ -12,6 +12,7 @@
 #include "cli/output_files.h"
 #include "cli/warnings.h"
 #include "tracker/track_recording.h"
+#include "twin/clock_offset.h"
 #include "twin/npz_fields.h"
 
 namespace physpring {
@@ -62,7 +63,7 @@ void Run(const TrackArguments& arguments) {
   ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
   ExpectNew(arguments.output, arguments.force);
   const Twin twin = ReadTwin(arguments.twin);
-  const Recording recording = ReadRecording(arguments.recording);
+  const Recording recording = ReadRecordingFor(twin, arguments.recording);
   PrintRemarks({&recording, 1});
   const TrackedMotion motion = TrackRecording(twin, recording, arguments.options);
   Npz arrays;

@@ -25,6 +25,7 @@
 #include "cli/train_options.h"
 #include "cli/training.h"
 #include "cli/warnings.h"
+#include "report/info_text.h"
 #include "report/material_text.h"
 #include "trainer/bodies/factors.h"
 #include "trainer/data/fit_data.h"
@@ -134,6 +135,19 @@ std::vector<EffectValues> ReadEffects(const std::string& path) {
   return effects;
 }
 
+// Of forces that did not set the twin's scale.
+std::vector<std::string> WarnOfUnusedForces(const Twin& twin, const FitData& data) {
+  std::vector<std::string> warnings;
+  for (const Recording& recording : data.recordings) {
+    if (twin.force_scale || recording.force.empty()) continue;
+    warnings.push_back(fmt::format(
+        "recording {}: array 'force' is not used: it has no number in a frame for fitting, or does "
+        "not agree with how the grasps must pull the object (N, in the axes of the recording)",
+        recording.name));
+  }
+  return warnings;
+}
+
 void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
                  double seconds) {
   for (std::size_t i = 0; i < run.twin.levels.size(); ++i) {
@@ -143,6 +157,7 @@ void PrintReport(const std::string& output, const TrainingRun& run, const std::s
                level.substeps_per_second / run.twin.fps);
   }
   fmt::print("{}\n", fit_error);
+  fmt::print("{}", DescribeScales(run.twin));
   if (run.twin.material) fmt::print("{}", DescribeMaterial(*run.twin.material));
   if (!run.status.empty()) fmt::print("{}\n", run.status);
   fmt::print("time: {}", FormatDuration(seconds));
@@ -201,8 +216,9 @@ void Run(const TrainArguments& arguments) {
         std::min(99.0, 100 * run.share), arguments.output);
     throw Interrupted{run.signal};
   }
+  Warn(WarnOfUnusedForces(run.twin, data));
   Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
-  const FitReport fit = JudgeFit(run.twin, data, options);
+  const FitReport fit = JudgeFit(run.twin, ByClockOf(run.twin, data), options);
   Warn(fit.warnings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   PrintReport(arguments.output, run, fit.line, elapsed.count());

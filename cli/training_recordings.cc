@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "twin/clock_offset.h"
 #include "twin/npz.h"
 
 namespace physpring {
@@ -13,10 +14,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // The recording at `path`, if it is this one.
-std::optional<Recording> ReadIfSame(const fs::path& path, const TrainedOn& trained) {
+std::optional<Recording> ReadIfSame(const Twin& twin, const fs::path& path,
+                                    const TrainedOn& trained) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored) || HashFile(path.string()) != trained.hash) return {};
-  return ReadRecording(path.string());
+  return ReadRecordingFor(twin, path.string());
 }
 
 }  // namespace
@@ -30,7 +32,7 @@ std::vector<Recording> FindTrainingRecordings(const Twin& twin,
   std::vector<Recording> found;
   for (const TrainedOn& trained : twin.trained_on) {
     for (const fs::path& folder : folders) {
-      auto recording = ReadIfSame(folder / (trained.name + ".npz"), trained);
+      auto recording = ReadIfSame(twin, folder / (trained.name + ".npz"), trained);
       if (!recording) continue;
       found.push_back(std::move(*recording));
       break;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "cli/message.h"
+#include "twin/error.h"
 
 namespace physpring {
 namespace {
@@ -60,6 +61,14 @@ void PrintRemarks(std::span<const Recording> recordings) {
     notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
   }
   for (const std::string& note : JoinAlike(notes)) Tell("note: {}\n", note);
+}
+
+void ExpectLastingGrasps(const Recording& recording, const char* done) {
+  if (recording.held.size() == 0 || recording.held.all()) return;
+  throw Error(
+      fmt::format("recording {}: has grasps that begin or end ('held'), which cannot be {} "
+                  "yet",
+                  recording.name, done));
 }
 
 }  // namespace physpring

@@ -16,7 +16,9 @@ struct Measured {
   double missing_fraction = 0;      // the part of all points in all frames that is not seen
   int frames_without_data = 0;      // how many frames see no point
   double largest_displacement = 0;  // m, the farthest that a point is from its start
-  Eigen::Vector3d extent{0, 0, 0};  // m, the size of points and interior in frame 0
+  // m, the size in frame 0 of points and interior, or else of the cloud
+  Eigen::Vector3d extent{0, 0, 0};
+  double start_speed = 0;  // m/s, of the fastest particle
 };
 
 Measured Measure(const Recording& recording) {
@@ -31,13 +33,39 @@ Measured Measure(const Recording& recording) {
           std::max(measured.largest_displacement, (frame.col(i) - recording.start.col(i)).norm());
     }
     missing += frame.cols() - seen;
-    measured.frames_without_data += seen == 0;
+    measured.frames_without_data += frame.cols() > 0 && seen == 0;
   }
   const double all = static_cast<double>(recording.frame_count()) * recording.point_count();
-  measured.missing_fraction = static_cast<double>(missing) / all;
-  const Points start = recording.start.leftCols(recording.particle_count());
-  measured.extent = start.rowwise().maxCoeff() - start.rowwise().minCoeff();
+  if (all > 0) measured.missing_fraction = static_cast<double>(missing) / all;
+  const bool clouds_alone = recording.particle_count() == 0;
+  const Points start =
+      clouds_alone ? recording.surface[0] : recording.start.leftCols(recording.particle_count());
+  for (int k = 0; k < 3; ++k) {
+    measured.extent[k] = start.row(k).maxCoeff<Eigen::PropagateNumbers>() -
+                         start.row(k).minCoeff<Eigen::PropagateNumbers>();
+  }
+  if (!clouds_alone) measured.start_speed = recording.velocity.colwise().norm().maxCoeff();
   return measured;
+}
+
+// Of clouds alone nothing is followed, so nobody can say how they move.
+std::string DescribePoints(const Recording& recording, const Measured& measured) {
+  if (recording.point_count() == 0) return "none; `physpring register` makes them of clouds";
+  return fmt::format("{}, {:.1f} % of their positions not seen{}", recording.point_count(),
+                     100 * measured.missing_fraction,
+                     measured.frames_without_data > 0
+                         ? fmt::format(", {} frames without any", measured.frames_without_data)
+                         : "");
+}
+
+std::string DescribeForces(const Recording& recording) {
+  double measured = 0, all = 0;
+  for (const Eigen::MatrixXd& frame : recording.force) {
+    measured += static_cast<double>((!frame.array().isNaN()).count());
+    all += static_cast<double>(frame.size());
+  }
+  return fmt::format("{}, {:.1f} % of them measured",
+                     recording.force[0].rows() == 1 ? "sizes" : "vectors", 100 * measured / all);
 }
 
 double RodLength(const Recording& recording) {
@@ -63,14 +91,12 @@ std::string DescribeRecording(const Recording& recording) {
   };
   line("frames", fmt::format("{} at {:g} fps, {:.2f} s; the first {} are for fitting", frames,
                              recording.fps, (frames - 1) / recording.fps, recording.train_frames));
-  line("points",
-       fmt::format("{}, {:.1f} % of their positions not seen{}", recording.point_count(),
-                   100 * measured.missing_fraction,
-                   measured.frames_without_data > 0
-                       ? fmt::format(", {} frames without any", measured.frames_without_data)
-                       : ""));
+  line("points", DescribePoints(recording, measured));
   line("interior", fmt::format("{}", recording.interior_count()));
-  line("controllers", fmt::format("{}", recording.controller_count()));
+  line("controllers",
+       fmt::format("{}{}", recording.controller_count(),
+                   recording.held.size() > 0 ? ", one for each time that one holds" : ""));
+  if (!recording.force.empty()) line("force", DescribeForces(recording));
   if (!recording.surface.empty())
     line("surface", fmt::format("{}", PointColumns(recording.surface)));
   if (!recording.track.empty())
@@ -78,9 +104,13 @@ std::string DescribeRecording(const Recording& recording) {
   const Eigen::Vector3d& extent = measured.extent;
   line("size",
        fmt::format("{:.3f} x {:.3f} x {:.3f} m in frame 0", extent.x(), extent.y(), extent.z()));
-  line("motion", fmt::format("up to {:.3f} m from where it starts", measured.largest_displacement));
-  const double speed = recording.velocity.colwise().norm().maxCoeff();
-  line("start", speed > 0 ? fmt::format("in motion, up to {:.2f} m/s", speed) : "at rest");
+  if (recording.point_count() > 0) {
+    line("motion",
+         fmt::format("up to {:.3f} m from where it starts", measured.largest_displacement));
+    line("start", measured.start_speed > 0
+                      ? fmt::format("in motion, up to {:.2f} m/s", measured.start_speed)
+                      : "at rest");
+  }
   line("rest shape", recording.rest_given ? "given" : "frame 0");
   if (recording.order.size() > 0) line("rod", fmt::format("{:.3f} m long", RodLength(recording)));
   line("mass", fmt::format("{:g} kg", recording.mass));
@@ -114,7 +144,7 @@ Json RecordingToJson(const Recording& recording) {
           {"mass_kg", recording.mass},
           {"gravity_m_s2", ToJson(recording.gravity)},
           {"ground", recording.ground ? ToJson(*recording.ground) : Json(nullptr)},
-          {"start_speed_m_s", recording.velocity.colwise().norm().maxCoeff()},
+          {"start_speed_m_s", measured.start_speed},
           {"warnings", recording.warnings},
           {"notes", recording.notes}};
 }

@@ -15,6 +15,9 @@ namespace physpring {
 std::string DescribeRecording(const Recording& recording);
 nlohmann::ordered_json RecordingToJson(const Recording& recording);
 
+// What is known of the scale of masses and stiffnesses, and of the clocks: lines to read.
+std::string DescribeScales(const Twin& twin);
+
 std::string DescribeTwin(const Twin& twin);
 nlohmann::ordered_json TwinToJson(const Twin& twin);
 

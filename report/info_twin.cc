@@ -129,6 +129,23 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
 
 }  // namespace
 
+std::string DescribeScales(const Twin& twin) {
+  const double mass = twin.levels[0].system.mass.sum();
+  std::string text =
+      twin.force_scale
+          ? fmt::format("scale: {:.4g} kg, and stiffnesses with it, by the measured forces\n", mass)
+          : fmt::format(
+                "scale: {:.4g} kg as the recordings say; stiffnesses are in proportion to it "
+                "(measured forces would tell)\n",
+                mass);
+  if (twin.clock_offset) {
+    text += fmt::format("clocks: the controllers moved {:.1f} ms {} than their clock says\n",
+                        1e3 * std::abs(*twin.clock_offset),
+                        *twin.clock_offset < 0 ? "earlier" : "later");
+  }
+  return text;
+}
+
 std::string DescribeTwin(const Twin& twin) {
   std::string text = fmt::format(
       "object       {} points, {} interior particles, {} controllers{}\n"
@@ -144,6 +161,7 @@ std::string DescribeTwin(const Twin& twin) {
       twin.ground.known ? DescribeGround(twin.ground.plane)
                         : "not said (a file of an older program)",
       twin.seed, twin.options_json);
+  text += DescribeScales(twin);
   for (std::size_t i = 0; i < twin.levels.size(); ++i) {
     text += DescribeLevel(twin.levels[i], i);
     if (i == 0 && twin.material) text += DescribeMaterial(*twin.material);
@@ -175,6 +193,8 @@ Json TwinToJson(const Twin& twin) {
           {"trained_on", trained_on},
           {"seed", twin.seed},
           {"options", ParseJson(twin.options_json, "options")},
+          {"clock_offset_s", twin.clock_offset ? Json(*twin.clock_offset) : Json(nullptr)},
+          {"force_scale", twin.force_scale ? Json(*twin.force_scale) : Json(nullptr)},
           {"material", twin.material ? MaterialToJson(*twin.material) : Json(nullptr)},
           {"levels", levels}};
 }

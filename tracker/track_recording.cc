@@ -160,10 +160,11 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   TrackedMotion motion;
   motion.hidden = Hidden(recording, options);
   const std::vector<FrameMeasurement> told = ToldOf(recording, motion.hidden, options.cloud);
-  TrackerBank tracker(
-      level.system, EnvironmentOf(recording),
-      {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0), twin.controller_velocity},
-      NoiseOf(told), recording.start.leftCols(recording.particle_count()), recording.velocity);
+  TrackerBank tracker(level.system, EnvironmentOf(recording),
+                      {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0),
+                       twin.controller_velocity, ReleasesOf(recording)},
+                      NoiseOf(told), recording.start.leftCols(recording.particle_count()),
+                      recording.velocity);
   const double delay = ControllerDelay(level.system);
   const auto begin = std::chrono::steady_clock::now();
   motion.position.push_back(tracker.best().position());

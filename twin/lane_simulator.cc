@@ -30,11 +30,12 @@ std::vector<Simulator<Real>> LaneSimulator<Real>::SimulatorsOf(
 
 template <class Real>
 LaneStep<Real> LaneSimulator<Real>::StepOf(const std::vector<Simulator<Real>>& simulators,
+                                           const FrameInput& input,
                                            const LaneKernel<Real>& kernel) {
   std::vector<const LevelStep<Real>*> levels;
   std::vector<NodeView<Real>> nodes;
   for (const Simulator<Real>& simulator : simulators) {
-    levels.push_back(&simulator.step_);
+    levels.push_back(&simulator.StepOf(input));
     nodes.push_back(simulator.node_step_.View());
   }
   return LaneStep<Real>(levels, nodes, kernel);
@@ -45,11 +46,16 @@ LaneSimulator<Real>::LaneSimulator(const std::vector<SpringMassSystem>& systems,
                                    const Environment& environment, const SimulationOptions& options,
                                    const LaneKernel<Real>& kernel)
     : simulators_(SimulatorsOf(systems, environment, options)),
-      step_(StepOf(simulators_, kernel)),
+      step_(StepOf(simulators_, {}, kernel)),
       state_(kLaneState * simulators_[0].step_.first_internal(), kernel.lanes),
       next_(state_),
       own_(kernel.lanes, nullptr) {
   for (const Simulator<Real>& simulator : simulators_) workspaces_.emplace_back(simulator);
+  for (const Released& released : options.releases) {
+    FrameInput input;
+    input.released = released;
+    released_.push_back(StepOf(simulators_, input, kernel));
+  }
 }
 
 template <class Real>
@@ -63,7 +69,10 @@ void LaneSimulator<Real>::AdvanceFrame(const std::vector<FrameInput>& inputs,
   for (int l = 0; l < lanes; ++l) {
     if (own_[l]) simulators_[l].StartFrame(inputs[l], *own_[l], &workspaces_[l]);
   }
-  step_.Interleave(own_, 0, nodes, state_.data());
+  const std::vector<Released>& releases = simulators_[0].options_.releases;
+  const auto release = std::find(releases.begin(), releases.end(), inputs[0].released);
+  LaneStep<Real>& step = release == releases.end() ? step_ : released_[release - releases.begin()];
+  step.Interleave(own_, 0, nodes, state_.data());
   for (int i = 0; i < substeps; ++i) {
     moving_.clear();
     for (int l = 0; l < lanes; ++l) {
@@ -72,12 +81,12 @@ void LaneSimulator<Real>::AdvanceFrame(const std::vector<FrameInput>& inputs,
       moving_.push_back(
           {l, simulators_[l].NowOf(inputs[l], i, workspaces_[l]), own_[l], &workspaces_[l].next});
     }
-    step_.Interleave(own_, nodes, controllers, state_.data());
-    step_.Advance(moving_, state_.data(), next_.data());
+    step.Interleave(own_, nodes, controllers, state_.data());
+    step.Advance(moving_, state_.data(), next_.data());
     std::swap(state_, next_);
     for (const LaneNow<Real>& one : moving_) std::swap(*one.state, *one.next);
   }
-  step_.Separate(state_.data(), 0, nodes, own_);
+  step.Separate(state_.data(), 0, nodes, own_);
   for (int l = 0; l < lanes; ++l) {
     if (own_[l]) simulators_[l].PlaceControllers(inputs[l], substeps - 1, own_[l]);
   }

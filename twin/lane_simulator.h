@@ -29,8 +29,8 @@ class LaneSimulator {
   // That of one system: it makes states and reads them.
   const Simulator<Real>& simulator(int lane) const { return simulators_[lane]; }
 
-  // Advances the states by a frame: one state and one input for each system. A system whose state
-  // is null stands still.
+  // Advances the states by a frame: one state and one input for each system; all release the same
+  // controllers. A system whose state is null stands still.
   void AdvanceFrame(const std::vector<FrameInput>& inputs, const std::vector<State*>& states);
 
  private:
@@ -39,11 +39,13 @@ class LaneSimulator {
   static std::vector<Simulator<Real>> SimulatorsOf(const std::vector<SpringMassSystem>& systems,
                                                    const Environment& environment,
                                                    const SimulationOptions& options);
+  // The step of all simulators in a frame of that input.
   static LaneStep<Real> StepOf(const std::vector<Simulator<Real>>& simulators,
-                               const LaneKernel<Real>& kernel);
+                               const FrameInput& input, const LaneKernel<Real>& kernel);
 
   std::vector<Simulator<Real>> simulators_;
   LaneStep<Real> step_;
+  std::vector<LaneStep<Real>> released_;  // of each of SimulationOptions::releases
   LaneArray<Real> state_, next_;
   std::vector<Workspace> workspaces_;
   std::vector<State*> own_;  // (lanes of the kernel) the states of those that move

@@ -64,23 +64,49 @@ Points NpzFields::Positions(const std::string& name, const std::string& size) {
   return Eigen::Map<const Points>(values.data(), 3, static_cast<Eigen::Index>(values.size() / 3));
 }
 
-std::vector<Points> NpzFields::FramesWithUnseen(const std::string& name, const std::string& size) {
-  GetNumbers(name, {"T", size, "3"});
+std::vector<Points> NpzFields::FramesWithUnseen(const std::string& name, const std::string& size,
+                                                const std::string& frames) {
+  GetNumbers(name, {frames, size, "3"});
   if (Extent(size) < 1) Fail(name, "has no points, expected at least one");
   return SplitFrames(name, &NpzFields::ExpectFiniteOrUnseen);
 }
 
-std::vector<Points> NpzFields::Frames(const std::string& name, const std::string& size) {
-  GetNumbers(name, {"T", size, "3"});
+std::vector<Points> NpzFields::Frames(const std::string& name, const std::string& size,
+                                      const std::string& frames) {
+  GetNumbers(name, {frames, size, "3"});
   return SplitFrames(name, &NpzFields::ExpectFinite);
+}
+
+std::vector<Eigen::MatrixXd> NpzFields::FramesOfNumbers(const std::string& name,
+                                                        const std::string& size,
+                                                        const std::string& frames) {
+  const bool vectors = Get(name).shape.size() == 3;
+  const NpzArray& array =
+      GetNumbers(name, vectors ? Extents{frames, size, "3"} : Extents{frames, size});
+  ExpectFewFrames(name, array.shape[0]);
+  const Eigen::Index rows = vectors ? 3 : 1;
+  const std::size_t numbers = static_cast<std::size_t>(rows) * array.shape[1];
+  std::vector<Eigen::MatrixXd> split;
+  for (std::size_t t = 0; t < array.shape[0]; ++t) {
+    Eigen::MatrixXd& frame = split.emplace_back(rows, static_cast<Eigen::Index>(array.shape[1]));
+    array.CopyDoubles(t * numbers, numbers, frame.data());
+    if (!frame.array().isInf().any()) continue;
+    Fail(name, fmt::format("holds an infinite number in frame {}, expected finite ones, or NaN for "
+                           "what was not measured",
+                           t));
+  }
+  return split;
+}
+
+void NpzFields::ExpectFewFrames(const std::string& name, std::size_t frames) const {
+  if (frames <= kMostFrames) return;
+  Fail(name, fmt::format("has {} frames, expected at most {}", frames, kMostFrames));
 }
 
 std::vector<Points> NpzFields::SplitFrames(const std::string& name, CheckFrame check) const {
   const NpzArray& array = Get(name);
   const std::size_t frames = array.shape[0], numbers = 3 * array.shape[1];
-  if (frames > kMostFrames) {
-    Fail(name, fmt::format("has {} frames, expected at most {}", frames, kMostFrames));
-  }
+  ExpectFewFrames(name, frames);
   std::vector<Points> split;
   split.reserve(frames);
   for (std::size_t t = 0; t < frames; ++t) {
@@ -114,6 +140,25 @@ void NpzFields::ExpectFiniteOrUnseen(const std::string& name, const Points& fram
                              frame(k, i), t, i, k));
     }
   }
+}
+
+Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> NpzFields::Flags(const std::string& name,
+                                                                    const std::string& rows,
+                                                                    const std::string& columns) {
+  const NpzArray& array = GetOfShape(name, {rows, columns});
+  ExpectFewFrames(name, array.shape[0]);
+  const std::vector<double> values = array.ToDoubles();
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> flags(
+      static_cast<Eigen::Index>(array.shape[0]), static_cast<Eigen::Index>(array.shape[1]));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] != 0 && values[i] != 1) {
+      Fail(name,
+           fmt::format("holds {} at {}, expected 0 or 1", values[i], FormatIndex(i, array.shape)));
+    }
+    const auto at = static_cast<Eigen::Index>(i);
+    flags(at / flags.cols(), at % flags.cols()) = values[i] == 1;
+  }
+  return flags;
 }
 
 std::vector<int> NpzFields::Ints(const std::string& name, const Extents& shape) {

@@ -40,11 +40,22 @@ class NpzFields {
   // overflows in squares.
   Points Positions(const std::string& name, const std::string& size);
 
-  // (T, size, 3) as T frames of 3 x size, at most 2^22 of them. There are one or more points, which
-  // may be NaN in all three coordinates, not in some.
-  std::vector<Points> FramesWithUnseen(const std::string& name, const std::string& size);
+  // (T, size, 3) as T frames of 3 x size, at most 2^22 of them. `frames`: a symbol for T. There are
+  // one or more points, which may be NaN in all three coordinates, not in some.
+  std::vector<Points> FramesWithUnseen(const std::string& name, const std::string& size,
+                                       const std::string& frames = "T");
   // The same, all finite; there may be no points.
-  std::vector<Points> Frames(const std::string& name, const std::string& size);
+  std::vector<Points> Frames(const std::string& name, const std::string& size,
+                             const std::string& frames = "T");
+  // (frames, size, 3) or (frames, size) as frames of 3 x size or 1 x size, at most 2^22 of them, of
+  // numbers that are finite or NaN.
+  std::vector<Eigen::MatrixXd> FramesOfNumbers(const std::string& name, const std::string& size,
+                                               const std::string& frames);
+
+  // (rows, columns) of truth values, or of 0 and 1.
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> Flags(const std::string& name,
+                                                           const std::string& rows,
+                                                           const std::string& columns);
 
   // Whole numbers, C order.
   std::vector<int> Ints(const std::string& name, const Extents& shape);
@@ -58,6 +69,7 @@ class NpzFields {
 
  private:
   const NpzArray& Get(const std::string& name) const;
+  void ExpectFewFrames(const std::string& name, std::size_t frames) const;
   const NpzArray& GetOfShape(const std::string& name, const Extents& shape);
   const NpzArray& GetNumbers(const std::string& name, const Extents& shape);
   std::vector<double> FiniteNumbers(const std::string& name, const Extents& shape);

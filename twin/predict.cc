@@ -27,7 +27,8 @@ void ExpectEqual(const Twin& twin, const Recording& recording, const char* what,
 template <class Real>
 std::vector<Points> Simulate(const Twin& twin, int level, const Recording& recording,
                              int substeps) {
-  const SimulationOptions options{1 / recording.fps, substeps, twin.controller_velocity};
+  const SimulationOptions options{1 / recording.fps, substeps, twin.controller_velocity,
+                                  ReleasesOf(recording)};
   const Simulator<Real> simulator(twin.levels[level].system, EnvironmentOf(recording), options);
   typename Simulator<Real>::Workspace workspace(simulator);
   const double delay = ControllerDelay(twin.levels[level].system);

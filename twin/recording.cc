@@ -16,21 +16,24 @@
 #include "twin/checks/plausibility.h"
 #include "twin/checks/start_velocity.h"
 #include "twin/error.h"
+#include "twin/grasps.h"
 #include "twin/npz.h"
 #include "twin/npz_fields.h"
 #include "twin/quote.h"
+#include "twin/recording_clocks.h"
 #include "twin/unseen_points.h"
 
 namespace physpring {
 namespace {
 
 constexpr double kStrongestGravity = 1000;  // m/s^2
-constexpr std::array<std::string_view, 13> kArrays{
-    "points", "controllers", "fps",   "mass",    "gravity", "ground",      "interior",
-    "rest",   "velocity",    "order", "surface", "track",   "train_frames"};
-constexpr double kSmallestDistance = 1e-7;  // m, between two particles
-constexpr double kAssumedMass = 0.1;        // kg
-constexpr double kLeastFps = 0.1, kMostFps = 1e6;
+constexpr std::array<std::string_view, 17> kArrays{
+    "points",  "controllers", "fps",          "mass",       "gravity",
+    "ground",  "interior",    "rest",         "velocity",   "order",
+    "surface", "track",       "train_frames", "timestamps", "controller_timestamps",
+    "force",   "held"};
+constexpr double kSmallestDistance = 1e-7;            // m, between two particles
+constexpr double kAssumedMass = 0.1;                  // kg
 constexpr double kLeastMass = 1e-9, kMostMass = 1e6;  // kg
 
 void ExpectKnownArrays(const Npz& arrays, const NpzFields& fields) {
@@ -49,7 +52,7 @@ std::vector<Points> ReadTracks(NpzFields& fields, const std::string& path, const
   return frames;
 }
 
-void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recording) {
+void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording) {
   recording.points = ReadTracks(fields, path, "points", "N", recording);
   if (fields.Extent("T") < 2) fields.Fail("points", "has fewer than 2 frames");
   if (!recording.points[0].array().isFinite().any()) {
@@ -61,8 +64,30 @@ void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recordi
       fields.Fail("points", fmt::format("has point {}, which is not seen in any frame", i));
     }
   }
-  recording.controllers = fields.Frames("controllers", "C");
-  if (fields.Has("surface"))
+}
+
+// Whether nothing is said of points that are followed.
+bool HasCloudsAlone(const NpzFields& fields) {
+  constexpr std::array kOfPoints{"points", "interior", "rest", "velocity", "order"};
+  return fields.Has("surface") && std::none_of(kOfPoints.begin(), kOfPoints.end(),
+                                               [&](const char* name) { return fields.Has(name); });
+}
+
+void ReadCloudsAlone(NpzFields& fields, const std::string& path, Recording& recording) {
+  recording.surface = ReadTracks(fields, path, "surface", "S", recording);
+  if (fields.Extent("T") < 2) fields.Fail("surface", "has fewer than 2 frames");
+  recording.points.assign(fields.Extent("T"), Points(3, 0));
+}
+
+void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recording) {
+  const bool alone = HasCloudsAlone(fields);
+  alone ? ReadCloudsAlone(fields, path, recording) : ReadPoints(fields, path, recording);
+  const std::string times_of_controllers = fields.Has("controller_timestamps") ? "Tc" : "T";
+  ReadControllers(fields, times_of_controllers, &recording);
+  if (fields.Has("force")) {
+    recording.force = fields.FramesOfNumbers("force", "C", times_of_controllers);
+  }
+  if (fields.Has("surface") && !alone)
     recording.surface = ReadTracks(fields, path, "surface", "S", recording);
   if (fields.Has("track")) recording.track = ReadTracks(fields, path, "track", "K", recording);
 }
@@ -86,7 +111,9 @@ Eigen::Vector4d ReadGround(NpzFields& fields) {
 }
 
 void ReadConstants(NpzFields& fields, const std::string& path, Recording& recording) {
-  recording.fps = ReadBetween(fields, "fps", kLeastFps, kMostFps);
+  if (fields.Has("fps") || !fields.Has("timestamps")) {
+    recording.fps = ReadBetween(fields, "fps", kLeastFps, kMostFps);
+  }
   if (fields.Has("mass")) {
     recording.mass = ReadBetween(fields, "mass", kLeastMass, kMostMass);
   } else {
@@ -221,36 +248,11 @@ Recording ReadArrays(const Npz& arrays, const std::string& path) {
   recording.name = std::filesystem::path(path).stem().string();
   ReadMeasured(fields, path, recording);
   ReadConstants(fields, path, recording);
+  BringToOneRate(fields, path, &recording);
   ReadParticles(fields, recording);
   SetStart(fields, path, recording);
+  SplitGrasps(fields, &recording);
   return recording;
-}
-
-// (columns, 3)
-NpzArray StorePositions(const Points& positions) {
-  return NpzArray::Floats({ExtentOf(positions.cols()), 3}, positions.data());
-}
-
-Npz StoreRecording(const Recording& recording) {
-  Npz arrays;
-  arrays["points"] = StoreFrames(recording.points);
-  const std::vector<Points> no_controllers(recording.points.size(), Points(3, 0));
-  arrays["controllers"] =
-      StoreFrames(recording.controllers.empty() ? no_controllers : recording.controllers);
-  arrays["fps"] = NpzArray::Doubles({}, &recording.fps);
-  arrays["mass"] = NpzArray::Doubles({}, &recording.mass);
-  arrays["gravity"] = NpzArray::Doubles({3}, recording.gravity.data());
-  arrays["train_frames"] = NpzArray::Ints({}, &recording.train_frames);
-  if (recording.ground) arrays["ground"] = NpzArray::Doubles({4}, recording.ground->data());
-  if (recording.interior.cols() > 0) arrays["interior"] = StorePositions(recording.interior);
-  if (recording.rest_given) arrays["rest"] = StorePositions(recording.rest);
-  if (!recording.velocity.isZero(0)) arrays["velocity"] = StorePositions(recording.velocity);
-  if (recording.order.size() > 0) {
-    arrays["order"] = NpzArray::Doubles({ExtentOf(recording.order.size())}, recording.order.data());
-  }
-  if (!recording.surface.empty()) arrays["surface"] = StoreFrames(recording.surface);
-  if (!recording.track.empty()) arrays["track"] = StoreFrames(recording.track);
-  return arrays;
 }
 
 }  // namespace
@@ -259,13 +261,14 @@ Npz StoreRecording(const Recording& recording) {
 // ReadRecording the bytes before both.
 Recording ParseRecording(Npz arrays, const std::string& path) {
   Recording recording = ReadArrays(arrays, path);
+  if (recording.point_count() == 0) return recording;
   const bool velocity_given = arrays.contains("velocity");
   arrays.clear();
   Check(path, velocity_given, recording);
   return recording;
 }
 
-Recording ReadRecording(const std::string& path) {
+Recording ReadRecordingOrClouds(const std::string& path) {
   std::string bytes = ReadFile(path);
   const std::string hash = HashBytes(bytes);
   Npz arrays = ParseNpz(bytes, path);
@@ -275,15 +278,11 @@ Recording ReadRecording(const std::string& path) {
   return recording;
 }
 
-void WriteRecording(const Recording& recording, const std::string& path) {
-  Npz arrays;
-  try {
-    arrays = StoreRecording(recording);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path, error.what()));
-  }
-  ParseRecording(arrays, path);  // what the reader would refuse is not written
-  WriteNpz(arrays, path);
+Recording ReadRecording(const std::string& path) {
+  Recording recording = ReadRecordingOrClouds(path);
+  if (recording.point_count() > 0) return recording;
+  throw Error(
+      path + ": has clouds ('surface') and no 'points'; `physpring register` makes points of them");
 }
 
 }  // namespace physpring

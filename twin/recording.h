@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording: measured 3-D points of one deformable object and of the grasps that move it, at a
-// fixed frame rate. T frames, N points, M interior particles, C controllers. SI units, z up.
+// fixed frame rate; what was measured at times of its own is brought to one (recording_clocks.h). T
+// frames, N points, M interior particles, C controllers. SI units, z up.
 #ifndef PHYSPRING_TWIN_RECORDING_H_
 #define PHYSPRING_TWIN_RECORDING_H_
 
@@ -20,10 +21,19 @@ struct Recording {
   std::vector<Points> points;       // T frames of 3 x N, m; a column of NaN = not seen
   std::vector<Points> controllers;  // T frames of 3 x C, m; C may be 0
   double fps = 0;                   // frames per second, > 0
+  // Whether points and controllers came with times of clocks of their own, which may differ.
+  bool two_clocks = false;
+  // T frames of 3 x C: the forces with which the grasps pull the object, N; or of 1 x C: their
+  // sizes. NaN: not measured. May be empty.
+  std::vector<Eigen::MatrixXd> force;
 
   double mass = 0.1;                      // the object's, kg
   Eigen::Vector3d gravity{0, 0, -9.81};   // m/s^2
   std::optional<Eigen::Vector4d> ground;  // plane (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1
+
+  // T x C: whether a controller holds the object in a frame; empty: always. Each holds once, from a
+  // frame to another one (grasps.h).
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> held;
 
   Points interior;              // 3 x M, m: unobserved particles in frame 0; M may be 0
   Points rest;                  // 3 x (N+M+C), m: stress-free positions; default: frame 0
@@ -60,10 +70,13 @@ struct Recording {
 
 // Reads NAME.npz. Throws Error naming file, array and expectation when anything is malformed:
 // unreadable or truncated file, missing array, wrong shape or type, NaN where none may be.
-// Arrays that the format does not define are an error, too.
+// Arrays that the format does not define are an error, too, and clouds (`surface`) without points.
 Recording ReadRecording(const std::string& path);
 
-// The same for arrays already in memory, without the hash; `path` gives the name and begins
+// The same, but there may be clouds alone: `points` are then frames of 3 x 0.
+Recording ReadRecordingOrClouds(const std::string& path);
+
+// The last for arrays already in memory, without the hash; `path` gives the name and begins
 // messages. Move large ones here: they are let go before the checks.
 Recording ParseRecording(Npz arrays, const std::string& path);
 

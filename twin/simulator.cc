@@ -7,6 +7,21 @@
 #include "twin/stop_request.h"
 
 namespace physpring {
+namespace {
+
+bool IsReleased(const SpringMassSystem& system, int spring, const Released& released) {
+  const auto [node, end] = std::minmax(system.springs[spring][0], system.springs[spring][1]);
+  return end >= system.node_count() && released[end - system.node_count()];
+}
+
+SpringMassSystem Release(SpringMassSystem system, const Released& released) {
+  for (int e = 0; e < system.spring_count(); ++e) {
+    if (IsReleased(system, e, released)) system.stiffness[e] = system.dashpot[e] = 0;
+  }
+  return system;
+}
+
+}  // namespace
 
 template <class Real>
 Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& environment,
@@ -16,6 +31,10 @@ Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& en
       options_(options),
       h_(options.frame_time / options.substeps),
       step_(system, environment, kernel) {
+  for (const Released& released : options.releases) {
+    released_.push_back(
+        {released, LevelStep<Real>(Release(system, released), environment, kernel)});
+  }
   const Setting& changed = step_.effects().changed();
   node_step_.Set(changed.system, h_, changed.gravity);
 }
@@ -23,6 +42,7 @@ Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& en
 template <class Real>
 void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
   step_.SetParameters(system);
+  for (ReleasedStep& one : released_) one.step.SetParameters(Release(system, one.released));
   const Setting& changed = step_.effects().changed();
   node_step_.Set(changed.system, h_, changed.gravity);
 }
@@ -81,6 +101,14 @@ void Simulator<Real>::StartFrame(const FrameInput& input, const State& state,
 }
 
 template <class Real>
+const LevelStep<Real>& Simulator<Real>::StepOf(const FrameInput& input) const {
+  const auto found = std::find_if(released_.begin(), released_.end(), [&](const ReleasedStep& one) {
+    return one.released == input.released;
+  });
+  return found == released_.end() ? step_ : found->step;
+}
+
+template <class Real>
 LevelSubstep<Real> Simulator<Real>::NowOf(const FrameInput& input, int substep,
                                           const Workspace& workspace) const {
   return {node_step_.View(), input.time, substep * h_, h_, workspace.controller_velocity,
@@ -92,18 +120,19 @@ void Simulator<Real>::Substep(const FrameInput& input, int substep, State* state
                               typename LevelStep<Real>::Impacts* impacts,
                               Workspace* workspace) const {
   PlaceControllers(input, substep, state);
-  step_.Advance(NowOf(input, substep, *workspace), *state, next, impacts, &workspace->buffers,
-                [](State*) {});
+  StepOf(input).Advance(NowOf(input, substep, *workspace), *state, next, impacts,
+                        &workspace->buffers, [](State*) {});
 }
 
 template <class Real>
 void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const {
-  step_.AdvanceAdjoint(NowOf(workspace->input, substep, *workspace), workspace->states[substep],
-                       &workspace->states[substep + 1], &workspace->impacts[substep], state_bar,
-                       &workspace->buffers);
-  step_.effects().TakeControllers(static_cast<double>(substep + 1) / options_.substeps,
-                                  options_.controller_velocity ? options_.frame_time : 0, state_bar,
-                                  &workspace->buffers.effects);
+  const LevelStep<Real>& step = StepOf(workspace->input);
+  step.AdvanceAdjoint(NowOf(workspace->input, substep, *workspace), workspace->states[substep],
+                      &workspace->states[substep + 1], &workspace->impacts[substep], state_bar,
+                      &workspace->buffers);
+  step.effects().TakeControllers(static_cast<double>(substep + 1) / options_.substeps,
+                                 options_.controller_velocity ? options_.frame_time : 0, state_bar,
+                                 &workspace->buffers.effects);
 }
 
 template <class Real>
@@ -150,15 +179,21 @@ void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gra
                                            Workspace* workspace) const {
   StopIfRequested();
   LevelBuffers<Real>& buffers = workspace->buffers;
-  step_.ClearGradient(&buffers);
+  const LevelStep<Real>& step = StepOf(workspace->input);
+  step.ClearGradient(&buffers);
   for (int i = options_.substeps - 1; i >= 0; --i) SubstepAdjoint(i, state_bar, workspace);
   // the controllers' motion is given: what was added to them does not count
-  std::fill(state_bar->begin() + nodes_, state_bar->begin() + step_.first_internal(),
+  std::fill(state_bar->begin() + nodes_, state_bar->begin() + step.first_internal(),
             NodeState<Real>{});
-  SystemGradient frame(step_.effects().changed().system);
-  step_.AddGradients(node_step_.View(), h_, buffers, &frame);
-  step_.effects().FinishGradient(workspace->input.delay_rate_start, workspace->input.delay_rate_end,
-                                 options_.frame_time, buffers.effects, &frame);
+  const SpringMassSystem& system = step.effects().changed().system;
+  SystemGradient frame(system);
+  step.AddGradients(node_step_.View(), h_, buffers, &frame);
+  step.effects().FinishGradient(workspace->input.delay_rate_start, workspace->input.delay_rate_end,
+                                options_.frame_time, buffers.effects, &frame);
+  const Released& released = workspace->input.released;
+  for (int e = 0; e < system.spring_count() && !released.empty(); ++e) {
+    if (IsReleased(system, e, released)) frame.stiffness[e] = frame.dashpot[e] = 0;
+  }
   *gradient += frame;
 }
 

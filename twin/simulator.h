@@ -21,10 +21,14 @@ namespace physpring {
 template <class Real>
 class LaneSimulator;
 
+// Which controllers hold nothing for a while: their springs are not there. Empty: none.
+using Released = std::vector<bool>;  // (controllers)
+
 struct SimulationOptions {
-  double frame_time = 1.0 / 30;     // s
-  int substeps = 667;               // a frame
-  bool controller_velocity = true;  // dashpots feel the controllers' velocity (false: PhysTwin)
+  double frame_time = 1.0 / 30;         // s
+  int substeps = 667;                   // a frame
+  bool controller_velocity = true;      // dashpots feel the controllers' velocity (false: PhysTwin)
+  std::vector<Released> releases = {};  // all that frames may ask for
 };
 
 // The input of a frame: where the controllers are at its start and its end (3 x controllers, m),
@@ -32,7 +36,8 @@ struct SimulationOptions {
 struct FrameInput {
   Points controllers_start, controllers_end;
   std::vector<Geom> geoms;
-  double time = 0;  // at its start, since the start of the recording, s
+  double time = 0;    // at its start, since the start of the recording, s
+  Released released;  // in the frame; one of SimulationOptions::releases, or empty
   // How fast controllers_start and controllers_end change with a delay of the controllers (m/s,
   // recorded_input.h); only its derivative needs it.
   Points delay_rate_start = Points(3, 0), delay_rate_end = Points(3, 0);
@@ -76,6 +81,13 @@ class Simulator {
  private:
   friend class LaneSimulator<Real>;
 
+  // A level whose springs of some controllers pull at nothing.
+  struct ReleasedStep {
+    Released released;
+    LevelStep<Real> step;
+  };
+
+  const LevelStep<Real>& StepOf(const FrameInput& input) const;
   LevelSubstep<Real> NowOf(const FrameInput& input, int substep, const Workspace& workspace) const;
   void StartFrame(const FrameInput& input, const State& state, Workspace* workspace) const;
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
@@ -87,6 +99,7 @@ class Simulator {
   SimulationOptions options_;
   double h_;  // s
   LevelStep<Real> step_;
+  std::vector<ReleasedStep> released_;
   NodeStep<Real> node_step_;
 };
 

@@ -54,6 +54,13 @@ struct Twin {
   std::optional<Material> material;  // of level 0, if its fit estimates it
   LinearPredictor linear;            // of the recordings that it was trained on; may be empty
 
+  // How much later the controllers of its recordings moved than their clock says, s; none: not
+  // sought, since the recordings have one clock.
+  std::optional<double> clock_offset;
+  // What its masses and stiffnesses were multiplied by, so that the forces at its controllers are
+  // as measured; none: no force was measured, and only their ratios are known.
+  std::optional<double> force_scale;
+
   std::vector<TrainedOn> trained_on;
   std::string options_json = "{}";  // the options it was trained with, a compact JSON object
   std::uint64_t seed = 0;

@@ -115,6 +115,8 @@ std::string StoreMeta(const Twin& twin, const std::string& path) {
                {"seed", twin.seed},
                {"options", options.json()}};
   if (twin.material) meta["material"] = MaterialToJson(*twin.material);
+  if (twin.clock_offset) meta["clock_offset_s"] = *twin.clock_offset;
+  if (twin.force_scale) meta["force_scale"] = *twin.force_scale;
   // a file name need not be UTF-8
   return meta.dump(1, ' ', false, Json::error_handler_t::replace);
 }
@@ -164,7 +166,7 @@ std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string&
   }
   meta.ExpectOnly({"format", "version", "program", "units", "name", "levels", "points", "interior",
                    "controllers", "controller_velocity", "recordings", "seed", "options",
-                   "material"});
+                   "material", "clock_offset_s", "force_scale"});
   twin.name = meta.Text("name");
   twin.points = meta.Count("points");
   twin.interior = meta.Count("interior");
@@ -175,6 +177,8 @@ std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string&
   twin.seed = meta.Unsigned("seed");
   twin.options_json = meta.Object("options").Dump();
   if (meta.Has("material")) twin.material = MaterialFromJson(meta.Object("material"));
+  if (meta.Has("clock_offset_s")) twin.clock_offset = meta.Number("clock_offset_s");
+  if (meta.Has("force_scale")) twin.force_scale = meta.Number("force_scale");
   const int levels = meta.Count("levels");
   if (levels < 1) meta.Fail("levels", "holds 0, expected at least 1");
   return {static_cast<std::size_t>(levels), meta.Count("controllers")};

@@ -57,6 +57,8 @@ def cases(inputs):
                         '--duration', '0.1', '--fps', '50'], ['--force']),
         Case('interior', ['interior', rope, '--mesh', inputs / 'box.obj', '--spacing', '0.008', '-o',
                           '{out}/filled.npz'], ['--force']),
+        Case('register', ['register', inputs / 'clouds.npz', '--points', '12', '-o',
+                          '{out}/followed.npz'], ['--force']),
         Case('eval', ['eval', inputs / 'small.twin.npz', inputs / 'swing.npz', '--json',
                       '{out}/eval.json', '--picture', '{out}/eval.html', '--trajectory',
                       '{out}/motion.npz']),

@@ -40,10 +40,22 @@ std::vector<std::string> physpring::FuzzSeeds() {
   arrays["surface"] = NpzArray::Floats({4, 2, 3}, numbers.data());
   arrays["track"] = NpzArray::Floats({4, 1, 3}, numbers.data());
   arrays["train_frames"] = NpzArray::Ints({}, &train_frames);
+  Npz clouds = least;
+  clouds.erase("points");
+  clouds["surface"] = arrays["surface"];
+  const double times[] = {0, 0.1, 0.2, 0.4}, hand_times[] = {0.05, 0.15, 0.3, 0.35};
+  const int held[] = {0, 1, 1, 0};
+  Npz timed = least;
+  timed["timestamps"] = NpzArray::Doubles({4}, times);
+  timed["controller_timestamps"] = NpzArray::Doubles({4}, hand_times);
+  timed["force"] = NpzArray::Doubles({4, 1, 3}, numbers.data());
+  timed["held"] = NpzArray::Ints({4, 1}, held);
+  timed.erase("fps");
   Npz empty = least;
   empty["points"] = NpzArray::Floats({65535, 0, 3}, nullptr);  // 2^31 - 1 frames of nothing
   empty["controllers"] = empty["points"];
   Npz none = least;
   none["points"] = NpzArray::Floats({0, 3, 3}, nullptr);
-  return {BytesOf(arrays), BytesOf(least), BytesOf(empty), BytesOf(none)};
+  return {BytesOf(arrays), BytesOf(least), BytesOf(clouds),
+          BytesOf(timed),  BytesOf(empty), BytesOf(none)};
 }

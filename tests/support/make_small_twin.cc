@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // For tests in Python: make_small_twin FOLDER writes a twin of two levels that was trained on the
-// motion of a body that weighs more on one side, that recording, and another one to judge by. Its
-// name has letters that a page must escape.
+// motion of a body that weighs more on one side, that recording, another one to judge by, whose
+// name has letters that a page must escape, and one whose points have no names.
 #include <filesystem>
 
 #include "tests/support/small_twin.h"
@@ -9,12 +9,22 @@
 namespace physpring {
 namespace {
 
+Recording CloudsOf(const Recording& recording) {
+  Recording clouds = recording;
+  clouds.surface = recording.points;
+  clouds.points.assign(recording.points.size(), Points(3, 0));
+  clouds.interior.resize(3, 0);
+  clouds.velocity.resize(3, 0);
+  return clouds;
+}
+
 void WriteInto(const std::filesystem::path& folder) {
   Twin heavy = SmallTwin(1);
   heavy.levels[0].system.mass.head(8) *= 3;
   const std::string swing = folder / "swing.npz";
   WriteRecording(RecordingOfMotion(heavy, 10), swing);
   WriteRecording(RecordingOfMotion(heavy, 12), folder / "<b>held & 'back'.npz");
+  WriteRecording(CloudsOf(RecordingOfMotion(heavy, 10)), folder / "clouds.npz");
   Twin twin = SmallTwin(2);
   twin.trained_on = {{"swing", ReadRecording(swing).hash, 10}};
   WriteTwin(twin, folder / "small.twin.npz");

@@ -98,6 +98,19 @@ TEST_F(RecordingFile, SaysWhichPointsWerePlaced) {
                 path_ + ": 1 of 3 points, not seen in frame 0, placed from neighbours: 1"});
 }
 
+TEST_F(RecordingFile, ReadsCloudsWithoutPointsWhereTheseAreAskedFor) {
+  for (const char* of_points : {"points", "interior", "rest", "velocity", "order"}) {
+    arrays_.erase(of_points);
+  }
+  EXPECT_EQ(ErrorOfChanged(), path_ +
+                                  ": has clouds ('surface') and no 'points'; `physpring register` "
+                                  "makes points of them");
+  const Recording clouds = ReadRecordingOrClouds(path_);
+  EXPECT_EQ(clouds.point_count(), 0);
+  EXPECT_EQ(clouds.frame_count(), 4);
+  ExpectEqual(clouds.surface, MakeRecording().surface);
+}
+
 TEST(DevelopmentRecordings, AreAllReadWithoutAWarning) {
   if (DevelopmentData().empty()) GTEST_SKIP() << kNoDevelopmentData;
   int count = 0;

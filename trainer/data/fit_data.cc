@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/clock_offset.h"
 #include "twin/error.h"
 #include "twin/numbering.h"
 
@@ -64,6 +65,11 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
     data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
                                                                         : own);
   }
+  return data;
+}
+
+FitData ByClockOf(const Twin& twin, FitData data) {
+  for (Recording& recording : data.recordings) UseClockOf(twin, &recording);
   return data;
 }
 

@@ -25,6 +25,9 @@ struct FitData {
 // particles, controllers or frame rate.
 FitData ReadFitData(const std::vector<RecordingEntry>& entries);
 
+// The recordings by the clock of a twin (clock_offset.h).
+FitData ByClockOf(const Twin& twin, FitData data);
+
 // The dense twin of a recording's object, but for its number of sub-steps a second.
 Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool controller_velocity,
                std::uint64_t seed);

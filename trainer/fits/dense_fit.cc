@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/fits/dense_fit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "trainer/bodies/candidates.h"
 #include "trainer/data/held_back.h"
 #include "trainer/fits/body_choice.h"
 #include "trainer/fits/chain_fit.h"
+#include "trainer/fits/clock_fit.h"
 #include "trainer/fits/material_estimate.h"
 #include "trainer/fits/net_fit.h"
 #include "twin/stability.h"
@@ -18,6 +20,7 @@ constexpr int kMostMaterialRecordings = 4;  // tell the material
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kChosen = 0.25;
+constexpr double kClocks = 0.25;  // of recordings of two clocks
 
 Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& data,
             const TrainOptions& options) {
@@ -30,13 +33,14 @@ Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& dat
   return twin;
 }
 
-}  // namespace
+bool HaveTwoClocks(const FitData& data) {
+  return std::any_of(data.recordings.begin(), data.recordings.end(), [](const Recording& one) {
+    return one.two_clocks && one.controller_count() > 0;
+  });
+}
 
-Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work) {
-  const Recording& first = data.recordings.at(0);
-  const Body simplest = CandidateBodies(first, options)[0];
-  work.Reached(TwinOf(StartSystem(first, simplest, kSoftestStart), simplest, data, options));
-
+Twin FitByOneClock(const FitData& data, const TrainOptions& options, const Work& work) {
+  const Recording& first = data.recordings[0];
   const ChosenBody chosen = ChooseBody(data, options, work.Part("choosing the model", 0, kChosen));
   work.Reached(TwinOf(chosen.System(first), chosen.body, data, options));
 
@@ -48,6 +52,23 @@ Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work
   Twin twin = TwinOf(net.system, net.body, data, options);
   twin.material =
       EstimateMaterial(net.system, net.body, FitEpisodes(data, kMostMaterialRecordings), options);
+  return twin;
+}
+
+}  // namespace
+
+Twin FitDense(const FitData& data, const TrainOptions& options, const Work& work) {
+  const Recording& first = data.recordings.at(0);
+  const Body simplest = CandidateBodies(first, options)[0];
+  const Twin start = TwinOf(StartSystem(first, simplest, kSoftestStart), simplest, data, options);
+  work.Reached(start);
+  if (!HaveTwoClocks(data)) return FitByOneClock(data, options, work);
+
+  Twin clock = start;
+  clock.clock_offset = FitClockOffset(data, options, work.Part("clocks", 0, kClocks));
+  work.Reached(clock);
+  Twin twin = FitByOneClock(ByClockOf(clock, data), options, work.Stretch("by one", kClocks, 1));
+  twin.clock_offset = clock.clock_offset;
   return twin;
 }
 

@@ -4,8 +4,9 @@
 //   a spring net becomes a smooth body, or gets single stiffnesses or springs (net_fit.h)
 //   a chain that bends (bodies/bending_chain.h) has its common factors fitted further, by free
 //   motions (chain_fit.h)
-// The start is over-damped and soft: its stiffness is the one of a few (measured in sub-steps a
-// frame) that predicts the fit frames best.
+// Where points and controllers have clocks of their own, their offset is found before all that
+// (clock_fit.h). The start is over-damped and soft: its stiffness is the one of a few (measured in
+// sub-steps a frame) that predicts the fit frames best.
 #ifndef PHYSPRING_TRAINER_FITS_DENSE_FIT_H_
 #define PHYSPRING_TRAINER_FITS_DENSE_FIT_H_
 

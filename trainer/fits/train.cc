@@ -2,6 +2,7 @@
 #include "trainer/fits/train.h"
 
 #include "trainer/fits/dense_fit.h"
+#include "trainer/fits/force_scale.h"
 #include "trainer/fits/hierarchy_fit.h"
 #include "trainer/fits/two_stage.h"
 
@@ -27,10 +28,14 @@ Twin Train(const FitData& data, const TrainOptions& options, const std::optional
   Twin twin = dense       ? Level0Of(*dense, work)
               : two_stage ? FitTwoStage(data, options, of_level0)
                           : FitDense(data, options, of_level0);
-  if (!dense) twin.linear = FitLinearPredictor(data.recordings);
-  if (options.levels == 1) return twin;
-  work.Reached(twin);
-  return FitHierarchy(twin, data, options, work.Part("coarse levels", kDensePart, 1));
+  const FitData by_its_clock = ByClockOf(twin, data);
+  if (!dense) twin.linear = FitLinearPredictor(by_its_clock.recordings);
+  if (options.levels > 1) {
+    work.Reached(twin);
+    twin = FitHierarchy(twin, by_its_clock, options, work.Part("coarse levels", kDensePart, 1));
+  }
+  if (!twin.force_scale) ScaleToForces(by_its_clock, &twin);
+  return twin;
 }
 
 }  // namespace physpring

@@ -15,7 +15,8 @@ class FrameWalkIn : public FrameWalk {
       : recording_(recording),
         loss_(loss),
         simulator_(system, EnvironmentOf(recording),
-                   {1 / recording.fps, options.substeps, options.controller_velocity}),
+                   {1 / recording.fps, options.substeps, options.controller_velocity,
+                    ReleasesOf(recording)}),
         workspace_(simulator_),
         state_(simulator_.MakeState(recording.start.leftCols(system.node_count()),
                                     recording.velocity)) {}

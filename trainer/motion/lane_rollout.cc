@@ -26,7 +26,9 @@ class LaneRollout {
         recording_(*episode.recording),
         observer_gain_(options.observer_gain),
         simulator_(systems, EnvironmentOf(recording_),
-                   {1 / recording_.fps, options.substeps, options.controller_velocity}, kernel),
+                   {1 / recording_.fps, options.substeps, options.controller_velocity,
+                    ReleasesOf(recording_)},
+                   kernel),
         states_(systems.size()),
         moving_(systems.size()),
         motions_(systems.size()) {

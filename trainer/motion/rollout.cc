@@ -26,7 +26,8 @@ class RolloutIn : public Rollout {
         delay_(ControllerDelay(system)),
         gradient_(system),
         simulator_(system, EnvironmentOf(recording_),
-                   {1 / recording_.fps, options.substeps, options.controller_velocity}),
+                   {1 / recording_.fps, options.substeps, options.controller_velocity,
+                    ReleasesOf(recording_)}),
         workspaces_{typename Simulator<Real>::Workspace(simulator_),
                     typename Simulator<Real>::Workspace(simulator_)} {
     states_.push_back(

@@ -44,6 +44,7 @@ std::string Direction(const Eigen::Vector3d& v) {
 }  // namespace
 
 std::string OddGravity(const Recording& recording, const MotionScale& scale) {
+  if (recording.held.size() > 0) return "";  // it may hang from another one in each frame
   const std::vector<Pull> pulls = Pulls(recording);
   if (recording.ground || pulls.empty() || recording.gravity.norm() == 0) return "";
   Eigen::Vector3d arm = Eigen::Vector3d::Zero(), torque = arm;
@@ -90,6 +91,7 @@ std::string FarGrasp(const Recording& recording, const MotionScale& scale) {
 std::string ReleasedGrasp(const Recording& recording, const MotionScale& scale) {
   const Points points = recording.start.leftCols(recording.point_count());
   const NeighbourSearch search(points);
+  if (recording.held.size() > 0) return "";  // it says so itself
   for (int c = 0; c < recording.controller_count(); ++c) {
     const std::vector<Neighbour> held = search.Nearest(recording.controllers[0].col(c), kHeld);
     double start = 0;
@@ -108,7 +110,7 @@ std::string ReleasedGrasp(const Recording& recording, const MotionScale& scale) 
         continue;
       return fmt::format(
           "controller {} is {:.3g} m from the points that it held at {:.3g} m, in frame {}: was "
-          "the object released?",
+          "the object released? The array 'held' tells",
           c, sum / seen, start, t);
     }
   }

@@ -317,5 +317,18 @@ TEST(FitDense, SaysThatTooFewSubstepsWereGiven) {
   }
 }
 
+// Its hands move later than their clock says.
+TEST(DenseFit, FindsTheOffsetOfTwoClocks) {
+  FitData data = Swung(1, {{"control_latency", Eigen::VectorXd::Constant(1, 0.03)}});
+  EXPECT_FALSE(Fit(data, Options()).clock_offset.has_value());
+  data.recordings[0].two_clocks = true;
+  const Twin twin = Fit(data, Options());
+  ASSERT_TRUE(twin.clock_offset.has_value());
+  EXPECT_NEAR(*twin.clock_offset, 0.03, 0.003);
+  EXPECT_TRUE(twin.levels[0].system.effects.empty());
+  const Recording by_its_clock = ByClockOf(twin, data).recordings[0];
+  EXPECT_LT(TrackError(twin, by_its_clock), 0.1 * MotionlessError(by_its_clock));
+}
+
 }  // namespace
 }  // namespace physpring

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/followed_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tracker/tracker_bank.h"
+#include "trainer/bodies/start_system.h"
+#include "twin/error.h"
+#include "twin/neighbours.h"
+#include "twin/recorded_input.h"
+#include "twin/rotation.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+// A frame. Fewer make a body that sags, more one that rings (docs/decisions/127).
+constexpr int kSubsteps = 40;
+
+// Each particle as those near it moved: a cloud that is seen again and again draws them onto its
+// points.
+Points MoveWithNeighbours(const Points& from, const Points& to) {
+  constexpr int kNearest = 12;
+  const NeighbourSearch search(from);
+  Points moved(3, from.cols());
+  for (Eigen::Index i = 0; i < from.cols(); ++i) {
+    std::vector<int> near;
+    for (const Neighbour& one : search.Nearest(from.col(i), kNearest)) near.push_back(one.index);
+    moved.col(i) = MoveRigidly(from(Eigen::all, near), to(Eigen::all, near), from.col(i));
+  }
+  return moved;
+}
+
+}  // namespace
+
+Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest) {
+  Recording recording = clouds;
+  const Points unseen = Points::Constant(3, start.cols(), std::numeric_limits<double>::quiet_NaN());
+  recording.points = {start};
+  while (recording.points.size() < clouds.surface.size()) recording.points.push_back(unseen);
+  recording.start.resize(3, start.cols() + clouds.controller_count());
+  recording.start << start, clouds.controllers[0];
+  recording.rest = rest;
+  recording.velocity = Points::Zero(3, start.cols());
+  return recording;
+}
+
+double MatchWidth(const Points& start) {
+  const double size = (start.rowwise().maxCoeff() - start.rowwise().minCoeff()).norm();
+  return std::max(0.4 * MedianSpacing(start), size / 200);
+}
+
+std::vector<Points> FollowClouds(const Recording& recording) {
+  SpringMassSystem system = MakeStartSystem(recording, {});
+  ScaleToSubsteps(1 / recording.fps, kSubsteps, kStepSafety, &system);
+  TrackerBank tracker(system, EnvironmentOf(recording),
+                      {1 / recording.fps, kSubsteps, true, ReleasesOf(recording)},
+                      MatchWidth(recording.points[0]), recording.points[0], recording.velocity);
+  FrameMeasurement measured;
+  std::vector<Points> position{recording.points[0]};
+  for (int frame = 1; frame < recording.frame_count(); ++frame) {
+    measured.cloud = recording.surface[static_cast<std::size_t>(frame)];
+    tracker.Advance(RecordedInput(recording, frame, 0), measured);
+    position.push_back(tracker.best().position());
+    if (position.back().allFinite()) continue;
+    throw Error(
+        fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
+                    recording.name, frame));
+  }
+  return position;
+}
+
+Points CarryOver(const Recording& known, const Recording& clouds) {
+  if (known.controller_count() != clouds.controller_count()) {
+    throw Error(
+        fmt::format("recording {}: has {} controllers, but {} has {}; expected recordings of one "
+                    "object",
+                    clouds.name, clouds.controller_count(), known.name, known.controller_count()));
+  }
+  const Points& there = clouds.controllers[0];
+  Points start = known.start.leftCols(known.point_count()), hands = known.controllers[0];
+  if (there.cols() > 0) {
+    start = MoveRigidly(known.controllers[0], there, start);
+    hands = MoveRigidly(known.controllers[0], there, hands);
+  }
+  const auto frames = static_cast<std::size_t>(std::ceil(clouds.fps)) + 1;
+  Recording way = WithParticles(clouds, start, known.rest);
+  way.start.rightCols(there.cols()) = hands;
+  way.points.resize(frames, Points::Constant(3, start.cols(), std::nan("")));
+  way.surface.assign(frames, clouds.surface[0]);
+  way.held.resize(0, 0);
+  way.controllers.clear();
+  for (std::size_t t = 0; t < frames; ++t) {
+    const double part = static_cast<double>(t) / static_cast<double>(frames - 1);
+    way.controllers.emplace_back(hands + part * (there - hands));
+  }
+  return MoveWithNeighbours(start, FollowClouds(way).back());
+}
+
+}  // namespace physpring

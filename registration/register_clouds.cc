@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/register_clouds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "registration/cloud_particles.h"
+#include "registration/followed_body.h"
+#include "tracker/soft_match.h"
+#include "twin/error.h"
+#include "twin/neighbours.h"
+#include "twin/rotation.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kMostPoints = 400;
+constexpr double kPerSeen = 1.5;      // points, by the points of a cloud
+constexpr int kFewestSeen = 8;        // points of the first cloud
+constexpr double kRoughPart = 0.6;    // of the points, while the shape is hardly known
+constexpr int kFramesOfShape = 40;    // whose clouds are carried back
+constexpr int kMostPerPoint = 16;     // carried back, by the points of the rough body
+constexpr double kLost = 2.5;         // widths of a match, that clouds are from the points
+constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that is not lost
+constexpr double kFarFromRough =
+    1.5;  // spacings: what is carried back farther away is not the body
+
+void ExpectBody(const Recording& clouds) {
+  if (clouds.surface.empty()) {
+    throw Error(fmt::format("recording {}: has no clouds ('surface')", clouds.name));
+  }
+  const Eigen::Index seen = PointsOf(clouds.surface[0]).cols();
+  if (seen >= kFewestSeen) return;
+  throw Error(
+      fmt::format("recording {}: array 'surface' has {} points in frame 0, expected {} or more",
+                  clouds.name, seen, kFewestSeen));
+}
+
+// In the middle of all frames.
+int PointsOfACloud(const std::vector<Points>& clouds) {
+  std::vector<int> counts;
+  for (const Points& cloud : clouds) counts.push_back(static_cast<int>(PointsOf(cloud).cols()));
+  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
+  std::nth_element(counts.begin(), middle, counts.end());
+  return *middle;
+}
+
+Recording AtRestInFrame0(const Recording& clouds, const Points& start) {
+  Points rest(3, start.cols() + clouds.controller_count());
+  rest << start, clouds.controllers[0];
+  return WithParticles(clouds, start, rest);
+}
+
+// The points of a cloud where they were in frame 0, if they moved along with the particles that are
+// nearest to them now.
+void CarryBack(const Points& cloud, const Points& now, const Points& start,
+               std::vector<Eigen::Vector3d>* carried) {
+  constexpr int kNearest = 8;
+  const double reach = kFarFromRough * MedianSpacing(start);
+  const NeighbourSearch search(now), search_at_start(start);
+  const Points points = PointsOf(cloud);
+  for (const auto& point : points.colwise()) {
+    std::vector<int> near;
+    for (const Neighbour& one : search.Nearest(point, kNearest)) near.push_back(one.index);
+    const Points back = MoveRigidly(now(Eigen::all, near), start(Eigen::all, near), point);
+    if (search_at_start.Nearest(back.col(0), 1)[0].distance < reach) carried->push_back(back);
+  }
+}
+
+// What the clouds of the first frames that are fitted show together, in frame 0.
+Points ShapeOf(const Recording& rough, const std::vector<Points>& position) {
+  const auto frames = static_cast<std::size_t>(std::min(kFramesOfShape, rough.train_frames));
+  std::vector<Eigen::Vector3d> carried;
+  for (std::size_t t = 0; t < frames; ++t) {
+    CarryBack(rough.surface[t], position[t], position[0], &carried);
+  }
+  const auto most = static_cast<std::size_t>(kMostPerPoint * position[0].cols());
+  const std::size_t step = std::max<std::size_t>(1, carried.size() / most);
+  Points shape(3, static_cast<Eigen::Index>((carried.size() + step - 1) / step));
+  for (Eigen::Index i = 0; i < shape.cols(); ++i) {
+    shape.col(i) = carried[static_cast<std::size_t>(i) * step];
+  }
+  return shape;
+}
+
+// What the clouds tell of the points in each frame after frame 0. Returns the part that they tell.
+double TellPoints(const std::vector<Points>& position, double width, Recording* recording) {
+  // as soft_match.h names it; the fewest points of a cloud that tell of a particle
+  constexpr double kNone = 0.05, kFewest = 0.3;
+  double seen = 0, all = 0;
+  for (std::size_t t = 1; t < position.size(); ++t) {
+    const SoftMatch match = MatchSoftly(position[t], recording->surface[t], width, kNone);
+    for (Eigen::Index i = 0; i < position[t].cols(); ++i) {
+      ++all;
+      if (match.count[i] < kFewest) continue;
+      ++seen;
+      recording->points[t].col(i) = match.target.col(i);
+    }
+  }
+  return seen / all;
+}
+
+double DistanceOfClouds(const Recording& recording, const std::vector<Points>& position) {
+  const auto last_second = static_cast<std::size_t>(std::ceil(recording.fps));
+  double sum = 0, count = 0;
+  for (std::size_t t = position.size() - std::min(position.size() - 1, last_second);
+       t < position.size(); ++t) {
+    const NeighbourSearch search(position[t]);
+    const Points cloud = PointsOf(recording.surface[t]);
+    for (const auto& point : cloud.colwise()) {
+      sum += search.Nearest(point, 1)[0].distance;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+RegisteredClouds Register(const Recording& recording) {
+  RegisteredClouds registered{recording};
+  const std::vector<Points> position = FollowClouds(recording);
+  registered.spacing = MedianSpacing(position[0]);
+  registered.distance = DistanceOfClouds(recording, position);
+  const double width = MatchWidth(position[0]);
+  registered.seen = TellPoints(position, width, &registered.recording);
+  registered.lost = registered.distance > kLost * width || registered.seen < kFewestTold;
+  return registered;
+}
+
+}  // namespace
+
+RegisteredClouds RegisterClouds(const Recording& clouds, int points) {
+  ExpectBody(clouds);
+  if (points == 0) {
+    points = std::min(kMostPoints, static_cast<int>(kPerSeen * PointsOfACloud(clouds.surface)));
+  }
+  if (points < kFewestSeen) {
+    throw Error(fmt::format("recording {}: {} points make no body, expected {} or more",
+                            clouds.name, points, kFewestSeen));
+  }
+  const int few = std::max(kFewestSeen, static_cast<int>(kRoughPart * points));
+  const Points first = PointsOf(clouds.surface[0]), kept = WithoutOutliers(first);
+  const Recording rough = AtRestInFrame0(clouds, SpreadParticles(kept, few));
+  const Points shape = ShapeOf(rough, FollowClouds(rough));
+  RegisteredClouds registered = Register(AtRestInFrame0(clouds, SpreadParticles(shape, points)));
+  registered.outliers = static_cast<int>(first.cols() - kept.cols());
+  return registered;
+}
+
+RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known) {
+  ExpectBody(clouds);
+  if (known.interior_count() > 0) {
+    throw Error(fmt::format(
+        "recording {}: has interior particles; expected a recording without them", known.name));
+  }
+  Recording recording = WithParticles(clouds, CarryOver(known, clouds), known.rest);
+  recording.rest_given = true;
+  recording.order = known.order;
+  return Register(recording);
+}
+
+}  // namespace physpring

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// A swung cloth, of which each frame shows other points.
+#include "registration/register_clouds.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/file_damage.h"
+#include "tests/support/swung_rope.h"
+#include "trainer/bodies/start_system.h"
+#include "twin/neighbours.h"
+#include "twin/rotation.h"
+#include "twin/stability.h"
+#include "twin/uniform.h"
+
+namespace physpring {
+namespace {
+
+constexpr int kRows = 9, kFrames = 80;
+constexpr double kSpacing = 0.02, kNoise = 1e-3;  // m
+
+// A cloth of kRows x kRows points, held at two corners, which swing; at another place if `turned`.
+Recording SwungCloth(bool turned) {
+  Recording recording;
+  recording.name = turned ? "turned" : "cloth";
+  recording.fps = 50;
+  recording.train_frames = kFrames;
+  Points cloth(3, kRows * kRows), hands(3, 2);
+  for (int i = 0; i < cloth.cols(); ++i) {
+    const int row = i / kRows;
+    cloth.col(i) = kSpacing * Eigen::Vector3d(i % kRows, 0.1 * (i % 2), -row);
+  }
+  hands << cloth.col(0), cloth.col(kRows - 1);
+  hands.row(2).array() += 0.5 * kSpacing;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(turned ? 0.8 : 0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Vector3d shift(0.3 * turned, 0, 0);
+  cloth = (turn * cloth).colwise() + shift;
+  hands = (turn * hands).colwise() + shift;
+  for (int t = 0; t < kFrames; ++t) {
+    const Eigen::Vector3d swing(0, 0.06 * std::sin(0.1 * t), 0.02 * std::sin(0.17 * t));
+    recording.controllers.emplace_back(hands.colwise() + turn * swing);
+  }
+  recording.points.assign(kFrames, cloth);
+  recording.start.resize(3, cloth.cols() + 2);
+  recording.start << cloth, hands;
+  recording.rest = recording.start;
+  recording.velocity = Points::Zero(3, cloth.cols());
+  SpringMassSystem system = MakeStartSystem(recording, {});
+  ScaleToSubsteps(1 / recording.fps, 60, kStepSafety, &system);
+  MoveAs(system, true, &recording);
+  return recording;
+}
+
+// Each frame shows points of its own, anywhere on the cloth, with noise.
+Recording CloudsOf(const Recording& truth, int seed) {
+  constexpr int kSeen = 200;
+  Recording clouds = truth;
+  clouds.points.assign(kFrames, Points(3, 0));
+  clouds.start = truth.controllers[0];
+  clouds.rest = clouds.start;
+  clouds.velocity.resize(3, 0);
+  std::mt19937_64 generator(seed);
+  for (const Points& cloth : truth.points) {
+    Points cloud(3, kSeen);
+    for (auto point : cloud.colwise()) {
+      const double u = (kRows - 1) * Uniform(&generator), v = (kRows - 1) * Uniform(&generator);
+      const int column = static_cast<int>(u), row = static_cast<int>(v);
+      const double a = u - column, b = v - row;
+      const int i = row * kRows + column;
+      point = (1 - a) * (1 - b) * cloth.col(i) + a * (1 - b) * cloth.col(i + 1) +
+              (1 - a) * b * cloth.col(i + kRows) + a * b * cloth.col(i + kRows + 1);
+      for (double& x : point) x += kNoise * Normal(&generator);
+    }
+    clouds.surface.push_back(cloud);
+  }
+  return clouds;
+}
+
+// Mean distance of the points from where the cloth's nearest points in frame 0 carry them, m.
+double OffTruth(const Recording& registered, const Recording& truth) {
+  const NeighbourSearch search(truth.points[0]);
+  double sum = 0, count = 0;
+  for (int i = 0; i < registered.point_count(); ++i) {
+    std::vector<int> near;
+    for (const Neighbour& one : search.Nearest(registered.points[0].col(i), 6)) {
+      near.push_back(one.index);
+    }
+    for (int t = 1; t < kFrames; ++t) {
+      const Eigen::Vector3d x = registered.points[t].col(i);
+      if (!x.allFinite()) continue;
+      const Points carried =
+          MoveRigidly(truth.points[0](Eigen::all, near), truth.points[t](Eigen::all, near),
+                      registered.points[0].col(i));
+      sum += (x - carried.col(0)).norm();
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+double OwnMotion(const Recording& truth) {
+  double sum = 0;
+  for (const Points& frame : truth.points) {
+    sum += (frame - truth.points[0]).colwise().norm().mean() / kFrames;
+  }
+  return sum;
+}
+
+TEST(RegisterClouds, FollowsPointsOfAClothWhoseCloudsHaveNoNames) {
+  const Recording truth = SwungCloth(false);
+  const RegisteredClouds registered = RegisterClouds(CloudsOf(truth, 1), 0);
+  EXPECT_EQ(registered.recording.point_count(), 300);
+  EXPECT_TRUE(registered.recording.points[0].allFinite());
+  EXPECT_GT(registered.seen, 0.4);
+  EXPECT_LT(registered.distance, registered.spacing);
+  const double off = OffTruth(registered.recording, truth);
+  EXPECT_LT(off, 0.4 * kSpacing);
+  EXPECT_LT(off, 0.2 * OwnMotion(truth));
+}
+
+TEST(RegisterClouds, IsTheSameEachTime) {
+  const Recording clouds = CloudsOf(SwungCloth(false), 1);
+  const RegisteredClouds once = RegisterClouds(clouds, 60), again = RegisterClouds(clouds, 60);
+  for (int t = 0; t < kFrames; ++t) {
+    EXPECT_TRUE((once.recording.points[t].array().isNaN() ||
+                 once.recording.points[t].array() == again.recording.points[t].array())
+                    .all());
+  }
+}
+
+TEST(RegisterClouds, TakesThePointsOfAnotherRecording) {
+  const Recording first = SwungCloth(false), second = SwungCloth(true);
+  const Recording known = RegisterClouds(CloudsOf(first, 1), 100).recording;
+  const RegisteredClouds like = RegisterCloudsLike(CloudsOf(second, 2), known);
+  ASSERT_EQ(like.recording.point_count(), 100);
+  EXPECT_LT(like.distance, like.spacing);
+  EXPECT_LT(OffTruth(like.recording, second), 0.4 * kSpacing);
+  // the same points of the cloth: both recordings start at rest, in places that are known
+  const Points placed = MoveRigidly(first.start, second.start, known.points[0]);
+  EXPECT_LT((like.recording.points[0] - placed).colwise().norm().mean(), 0.4 * kSpacing);
+}
+
+// A few points that the camera saw elsewhere, in frame 0, are no part of the cloth.
+TEST(RegisterClouds, LeavesOutFarPointsOfTheFirstCloud) {
+  const Recording truth = SwungCloth(false);
+  Recording clouds = CloudsOf(truth, 1);
+  clouds.surface[0].col(5) << 3, 0, 0;
+  clouds.surface[0].col(90) << 0, 0.5, 0.2;
+  const RegisteredClouds registered = RegisterClouds(clouds, 100);
+  EXPECT_EQ(registered.outliers, 2);
+  EXPECT_FALSE(registered.lost);
+  EXPECT_LT(OffTruth(registered.recording, truth), 0.4 * kSpacing);
+}
+
+// It takes its own points again.
+TEST(RegisterClouds, IsLikeItself) {
+  const Recording truth = SwungCloth(false), clouds = CloudsOf(truth, 1);
+  const Recording known = RegisterClouds(clouds, 0).recording;
+  const RegisteredClouds like = RegisterCloudsLike(clouds, known);
+  EXPECT_FALSE(like.lost);
+  EXPECT_LT(OffTruth(like.recording, truth), 0.4 * kSpacing);
+}
+
+TEST(RegisterClouds, SaysThatItIsLost) {
+  Recording clouds = CloudsOf(SwungCloth(false), 1);
+  for (std::size_t t = 40; t < clouds.surface.size(); ++t) clouds.surface[t].array() += 1;
+  EXPECT_TRUE(RegisterClouds(clouds, 100).lost);
+}
+
+TEST(RegisterClouds, RefusesWhatIsNoBody) {
+  Recording clouds = CloudsOf(SwungCloth(false), 1);
+  const Recording known = SwungCloth(true);
+  clouds.surface[0] = clouds.surface[0].leftCols(7).eval();
+  const std::string few =
+      "recording cloth: array 'surface' has 7 points in frame 0, expected 8 or more";
+  EXPECT_EQ(ErrorOf("recording cloth", [&] { RegisterClouds(clouds, 0); }), few);
+  EXPECT_EQ(ErrorOf("recording cloth", [&] { RegisterCloudsLike(clouds, known); }), few);
+  const Recording sound = CloudsOf(SwungCloth(false), 1);
+  EXPECT_EQ(ErrorOf("recording cloth", [&] { RegisterClouds(sound, 7); }),
+            "recording cloth: 7 points make no body, expected 8 or more");
+  clouds.surface.clear();
+  EXPECT_EQ(ErrorOf("recording cloth", [&] { RegisterClouds(clouds, 0); }),
+            "recording cloth: has no clouds ('surface')");
+}
+
+TEST(RegisterClouds, NeedsTheSameNumberOfControllers) {
+  const Recording clouds = CloudsOf(SwungCloth(false), 1);
+  Recording known = SwungCloth(true);
+  for (Points& hands : known.controllers) hands = hands.leftCols(1).eval();
+  EXPECT_EQ(
+      ErrorOf("recording cloth", [&] { RegisterCloudsLike(clouds, known); }),
+      "recording cloth: has 2 controllers, but turned has 1; expected recordings of one object");
+}
+
+}  // namespace
+}  // namespace physpring

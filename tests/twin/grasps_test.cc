@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grasps that begin and end: how they are read, and that a released controller moves nothing.
+#include "twin/grasps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "tests/support/recording_file.h"
+#include "tests/support/swung_rope.h"
+#include "trainer/bodies/start_system.h"
+#include "trainer/motion/lane_rollout.h"
+#include "trainer/motion/rollout.h"
+#include "twin/error.h"
+#include "twin/predict.h"
+#include "twin/recorded_input.h"
+
+namespace physpring {
+namespace {
+
+class HeldRecording : public RecordingFile {
+ protected:
+  void SetHeld(const std::vector<int>& held) {
+    arrays_["held"] = NpzArray::Ints({held.size(), 1}, held.data());
+  }
+};
+
+TEST_F(HeldRecording, AGraspThatLastsIsTheController) {
+  SetHeld({1, 1, 1, 1});
+  const Recording read = ReadChanged(), all = MakeRecording();
+  EXPECT_EQ(read.controllers, all.controllers);
+  EXPECT_TRUE(read.held.all());
+  EXPECT_TRUE(ReleasesOf(read).empty());
+}
+
+TEST_F(HeldRecording, AGraspThatEndsIsReleased) {
+  SetHeld({1, 1, 0, 0});
+  SetValue("controllers", 9, kNan);
+  SetValue("controllers", 10, kNan);
+  SetValue("controllers", 11, kNan);
+  const Recording read = ReadChanged(), all = MakeRecording();
+  EXPECT_TRUE(RecordedInput(read, 1, 0).released.empty());
+  EXPECT_EQ(RecordedInput(read, 2, 0).released, Released{true});
+  EXPECT_EQ(RecordedInput(read, 3, 0).released, Released{true});
+  EXPECT_EQ(ReleasesOf(read), std::vector<Released>{Released{true}});
+  EXPECT_EQ(read.controllers[1], all.controllers[1]);
+  EXPECT_EQ(read.controllers[3], all.controllers[1]);  // it stands still
+  EXPECT_EQ(read.start.rightCols(1), all.controllers[0]);
+  WriteRecording(read, path_);
+  EXPECT_TRUE((ReadRecording(path_).held == read.held).all());
+}
+
+// The points move by 0.125 m a frame along all axes.
+TEST_F(HeldRecording, AGraspThatBeginsLateIsCarriedBack) {
+  for (const char* of_start : {"rest", "order"}) arrays_.erase(of_start);
+  SetHeld({0, 0, 1, 1});
+  const Recording read = ReadChanged(), all = MakeRecording();
+  const Eigen::Vector3d place = all.controllers[2].col(0) - Eigen::Vector3d::Constant(0.25);
+  EXPECT_TRUE(read.start.col(4).isApprox(place, 1e-9));
+  EXPECT_TRUE(read.rest.col(4).isApprox(place, 1e-9));
+  EXPECT_EQ(RecordedInput(read, 2, 0).released, Released{true});
+  EXPECT_TRUE(RecordedInput(read, 3, 0).released.empty());
+}
+
+TEST_F(HeldRecording, EachGraspIsAControllerOfItsOwn) {
+  constexpr int kLast = 23;
+  Recording rope = SwungRope(8, kLast + 1);
+  for (int t = 0; t <= kLast; ++t) {  // the rope goes along with its hand
+    rope.points[t].colwise() += (rope.controllers[t] - rope.controllers[0]).col(0);
+  }
+  rope.held.resize(kLast + 1, 1);
+  rope.held.setConstant(true);
+  rope.held.block(8, 0, 4, 1).setConstant(false);
+  for (int t = 12; t <= kLast; ++t) rope.controllers[t].row(2).array() -= 0.05;  // further down
+  for (int t = 0; t <= kLast; ++t) rope.force.emplace_back(Points::Constant(3, 1, t));
+  WriteRecording(rope, path_);
+  const Recording read = ReadRecording(path_);
+  ASSERT_EQ(read.controller_count(), 2);
+  EXPECT_TRUE(read.held.col(0).head(8).all() && !read.held.col(0).tail(16).any());
+  EXPECT_TRUE(read.held.col(1).tail(12).all() && !read.held.col(1).head(12).any());
+  EXPECT_TRUE(read.start.col(8).isApprox(rope.start.col(8), 1e-6));
+  const Eigen::Vector3d lower = rope.start.col(8) - Eigen::Vector3d(0, 0, 0.05);
+  EXPECT_LT((read.start.col(9) - lower).norm(), 1e-6);
+  EXPECT_LT((read.rest.col(9) - lower).norm(), 1e-6);
+  EXPECT_EQ(read.force[3](0, 0), 3);
+  EXPECT_TRUE(std::isnan(read.force[3](0, 1)));
+  EXPECT_EQ(read.force[20](0, 1), 20);
+  const std::vector<Released> releases{{false, true}, {true, true}, {true, false}};
+  EXPECT_EQ(ReleasesOf(read), releases);
+}
+
+TEST_F(HeldRecording, RefusesWhatIsNoGrasp) {
+  SetHeld({1, 0, 1, 0});
+  EXPECT_EQ(ErrorOfChanged(),
+            path_ + ": array 'held' says that controller 0 holds in no two frames in a row");
+  SetHeld({1, 1, 2, 1});
+  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'held' holds 2 at [2, 0], expected 0 or 1");
+  SetHeld({1, 1, 1, 0});
+  for (std::size_t k = 3; k < 6; ++k) SetValue("controllers", k, kNan);
+  EXPECT_EQ(ErrorOfChanged(),
+            path_ + ": array 'controllers' holds nan at [1, 0], where 'held' says that it holds");
+}
+
+// A rope held by a hand at either end, the lower one of which lets go and takes hold again.
+class ReleasedRope : public testing::Test {
+ protected:
+  static constexpr int kParticles = 8, kFrames = 24;
+
+  ReleasedRope() : recording_(SwungRope(kParticles, kFrames)) {
+    recording_.held.resize(kFrames, 2);
+    recording_.held.setConstant(true);
+    recording_.held.block(6, 1, 9, 1).setConstant(false);
+    recording_.start.conservativeResize(3, kParticles + 2);
+    recording_.start.col(kParticles + 1) << 0.003, 0.002, -0.01 * kParticles;
+    recording_.rest = recording_.start;
+    for (int t = 0; t < kFrames; ++t) {
+      Points& hands = recording_.controllers[t];
+      hands.conservativeResize(3, 2);
+      hands.col(1) = recording_.start.col(kParticles + 1);
+    }
+    system_ = MakeStartSystem(recording_, {.max_neighbours = 4, .controller_max_neighbours = 3});
+    ScaleToSubsteps(1 / recording_.fps, 20, 0.7, &system_);
+    for (int e = 0; e < system_.spring_count(); ++e) system_.stiffness[e] *= 1 + 0.1 * (e % 3);
+  }
+
+  RolloutOptions Options() const {
+    RolloutOptions options;
+    options.substeps = 30;
+    return options;
+  }
+
+  Recording recording_;
+  SpringMassSystem system_;
+};
+
+TEST_F(ReleasedRope, MovesAsIfTheHandWereNotThere) {
+  Recording without = recording_;
+  without.held.resize(0, 0);
+  SpringMassSystem free = system_;
+  for (int e = 0; e < system_.spring_count(); ++e) {
+    if (std::max(system_.springs[e][0], system_.springs[e][1]) == kParticles + 1) {
+      free.stiffness[e] = free.dashpot[e] = 0;
+    }
+  }
+  const Episode held{&recording_, kFrames};
+  const auto whole = RollOut(system_, held, Options());
+  // the released frames alone, from the state that both have when the hand opens
+  recording_.held.col(1).setConstant(false);
+  const Episode released{&recording_, kFrames}, absent{&without, kFrames};
+  const auto open = RollOut(system_, released, Options());
+  const auto gone = RollOut(free, absent, Options());
+  EXPECT_EQ(open->positions(), gone->positions());
+  EXPECT_NE(whole->positions()[4], open->positions()[4]);
+}
+
+TEST_F(ReleasedRope, IsTheSameInLanes) {
+  std::vector<SpringMassSystem> systems(5, system_);
+  for (std::size_t i = 0; i < systems.size(); ++i) systems[i].stiffness *= 1 + 0.05 * i;
+  const Episode episode{&recording_, kFrames};
+  const auto together = RollOutSideBySide(systems, episode, Options());
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    ASSERT_TRUE(together[i].has_value());
+    EXPECT_EQ(*together[i], RollOut(systems[i], episode, Options())->positions());
+  }
+}
+
+// Against central differences.
+TEST_F(ReleasedRope, HasTheRightGradient) {
+  const Episode episode{&recording_, kFrames};
+  std::vector<Points> weights;
+  for (int t = 0; t < kFrames; ++t) weights.emplace_back(Points::Random(3, kParticles));
+  const auto loss = [&](const SpringMassSystem& system) {
+    const auto rollout = RollOut(system, episode, Options());
+    double sum = 0;
+    for (int t = 0; t < kFrames; ++t) sum += weights[t].cwiseProduct(rollout->positions()[t]).sum();
+    return sum;
+  };
+  const SystemGradient gradient = RollOut(system_, episode, Options())->Adjoint(weights).gradient;
+  for (int e = 0; e < system_.spring_count(); ++e) {
+    if (!system_.IsControllerSpring(e)) continue;
+    // lengths act strongest
+    for (auto [values, found, part] :
+         {std::tuple{&SpringMassSystem::stiffness, gradient.stiffness[e], 1e-5},
+          std::tuple{&SpringMassSystem::dashpot, gradient.dashpot[e], 1e-5},
+          std::tuple{&SpringMassSystem::rest_length, gradient.rest_length[e], 1e-7}}) {
+      SpringMassSystem more = system_, less = system_;
+      const double step = part * (system_.*values)[e];
+      (more.*values)[e] += step;
+      (less.*values)[e] -= step;
+      const double expected = (loss(more) - loss(less)) / (2 * step);
+      EXPECT_NEAR(found, expected, 1e-6 * std::abs(expected) + 1e-9) << e;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace physpring

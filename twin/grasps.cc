@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/grasps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "twin/neighbours.h"
+#include "twin/rotation.h"
+
+namespace physpring {
+namespace {
+
+// A controller that holds from its first frame to its last one.
+struct Grasp {
+  int controller, first, last;
+};
+
+// Those of two frames or more.
+std::vector<Grasp> GraspsOf(const Recording& recording, int controller) {
+  std::vector<Grasp> grasps;
+  const auto held = recording.held.col(controller);
+  for (int t = 0; t < held.size(); ++t) {
+    if (!held[t]) continue;
+    const int first = t;
+    while (t + 1 < held.size() && held[t + 1]) ++t;
+    if (t > first) grasps.push_back({controller, first, t});
+  }
+  return grasps;
+}
+
+std::vector<Grasp> AllGrasps(const Recording& recording) {
+  std::vector<Grasp> first, others;
+  for (int c = 0; c < recording.held.cols(); ++c) {
+    const std::vector<Grasp> own = GraspsOf(recording, c);
+    first.push_back(own.at(0));
+    others.insert(others.end(), own.begin() + 1, own.end());
+  }
+  first.insert(first.end(), others.begin(), others.end());
+  return first;
+}
+
+// NaN where a controller does not hold becomes the place before, or the first one after.
+void FillReleased(const NpzFields& fields, Recording* recording) {
+  std::vector<Points>& frames = recording->controllers;
+  const int count = static_cast<int>(frames.size());
+  for (int c = 0; c < recording->held.cols(); ++c) {
+    int known = -1;
+    for (int t = 0; t < count; ++t) {
+      if (frames[t].col(c).allFinite()) {
+        for (int before = 0; known < 0 && before < t; ++before)
+          frames[before].col(c) = frames[t].col(c);
+        known = t;
+      } else if (recording->held(t, c)) {
+        fields.Fail("controllers",
+                    fmt::format("holds nan at [{}, {}], where 'held' says that it holds", t, c));
+      } else if (known >= 0) {
+        frames[t].col(c) = frames[known].col(c);
+      }
+    }
+    if (GraspsOf(*recording, c).empty()) {
+      fields.Fail("held",
+                  fmt::format("says that controller {} holds in no two frames in a row", c));
+    }
+  }
+}
+
+// Where `place` is in `to`, if it moves along with the columns of `from` nearest to it; columns
+// that are NaN in either are left out.
+Eigen::Vector3d Carry(const Eigen::Vector3d& place, const Points& from, const Points& to,
+                      bool* carried) {
+  constexpr int kNearest = 8;
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index i = 0; i < from.cols(); ++i) {
+    if (from.col(i).allFinite() && to.col(i).allFinite()) known.push_back(i);
+  }
+  *carried = !known.empty();
+  if (known.empty()) return place;
+  std::vector<Eigen::Index> near;
+  const Points shape = from(Eigen::all, known);
+  for (const Neighbour& one : NeighbourSearch(shape).Nearest(place, kNearest)) {
+    near.push_back(known[static_cast<std::size_t>(one.index)]);
+  }
+  return MoveRigidly(from(Eigen::all, near), to(Eigen::all, near), place);
+}
+
+// Between those of the two particles that are nearest to it in frame 0, m.
+double ArcLengthAt(const Recording& recording, const Eigen::Vector3d& place) {
+  const NeighbourSearch search(Points(recording.start.leftCols(recording.particle_count())));
+  double sum = 0, weights = 0;
+  for (const Neighbour& one : search.Nearest(place, 2)) {
+    const double weight = 1 / (one.distance + 1e-9);
+    sum += weight * recording.order[one.index];
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+// Its columns of start, rest and order, where the grasp does not begin in frame 0.
+void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording& read, int column,
+                    Recording* recording) {
+  const int particles = read.particle_count();
+  const Points start = read.start.leftCols(read.point_count());
+  bool carried = false;
+  const Eigen::Vector3d place =
+      Carry(read.controllers[static_cast<std::size_t>(grasp.first)].col(grasp.controller),
+            read.points[static_cast<std::size_t>(grasp.first)], start, &carried);
+  if (!carried) {
+    fields.Fail("points", fmt::format("sees nothing in frame {}, in which controller {} takes hold",
+                                      grasp.first, grasp.controller));
+  }
+  recording->start.col(particles + column) = place;
+  recording->rest.col(particles + column) =
+      Carry(place, start, read.rest.leftCols(read.point_count()), &carried);
+  if (read.order.size() > 0) recording->order[particles + column] = ArcLengthAt(read, place);
+}
+
+// The path of a controller while it holds; before and after it stands still.
+void SetPath(const Grasp& grasp, const Recording& read, int column, Recording* recording) {
+  for (int t = 0; t < read.frame_count(); ++t) {
+    const auto at = static_cast<std::size_t>(t);
+    const auto from = static_cast<std::size_t>(std::clamp(t, grasp.first, grasp.last));
+    recording->controllers[at].col(column) = read.controllers[from].col(grasp.controller);
+    recording->held(t, column) = t >= grasp.first && t <= grasp.last;
+    if (!read.force.empty()) {
+      recording->force[at].col(column) = read.force[at].col(grasp.controller);
+      if (!recording->held(t, column)) recording->force[at].col(column).setConstant(std::nan(""));
+    }
+  }
+}
+
+}  // namespace
+
+void ReadControllers(NpzFields& fields, const std::string& frames, Recording* recording) {
+  if (!fields.Has("held")) {
+    recording->controllers = fields.Frames("controllers", "C", frames);
+    return;
+  }
+  recording->controllers = fields.FramesWithUnseen("controllers", "C", frames);
+  recording->held = fields.Flags("held", frames, "C");
+  FillReleased(fields, recording);
+}
+
+void SplitGrasps(const NpzFields& fields, Recording* recording) {
+  if (recording->held.size() == 0) return;
+  const Recording read = *recording;
+  const std::vector<Grasp> grasps = AllGrasps(read);
+  const int particles = read.particle_count(), count = static_cast<int>(grasps.size());
+  recording->held.resize(read.frame_count(), count);
+  for (Points& frame : recording->controllers) frame.resize(3, count);
+  for (Eigen::MatrixXd& frame : recording->force) frame.resize(frame.rows(), count);
+  for (Points* shape : {&recording->start, &recording->rest}) {
+    shape->conservativeResize(3, particles + count);
+  }
+  if (read.order.size() > 0) recording->order.conservativeResize(particles + count);
+  for (int i = 0; i < count; ++i) {
+    const Grasp& grasp = grasps[static_cast<std::size_t>(i)];
+    SetPath(grasp, read, i, recording);
+    if (grasp.first > 0) PlaceLateGrasp(fields, grasp, read, i, recording);
+  }
+}
+
+}  // namespace physpring

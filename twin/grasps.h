@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grasps that begin and end. The array `held` says in which frames a controller holds the object.
+// Each time that it holds is a grasp, and a controller of its own: it takes hold of the particles
+// that are near it when it begins. So where it was then is carried back to frame 0 with the points
+// around it, and springs are found there.
+#ifndef PHYSPRING_TWIN_GRASPS_H_
+#define PHYSPRING_TWIN_GRASPS_H_
+
+#include <string>
+
+#include "twin/npz_fields.h"
+#include "twin/recording.h"
+
+namespace physpring {
+
+// Reads `controllers` and, if it is there, `held`, (frames, C). A controller may be NaN where it
+// does not hold: it is where it last held, or will hold first. Throws Error where one holds and is
+// NaN, and for one that holds in no two frames in a row.
+void ReadControllers(NpzFields& fields, const std::string& frames, Recording* recording);
+
+// Makes a controller of each grasp: first the first ones of the controllers, in their order, then
+// the others. `start`, `rest`, `order` and `force` get their columns. Throws Error where no point
+// is seen when a grasp begins.
+void SplitGrasps(const NpzFields& fields, Recording* recording);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_GRASPS_H_
