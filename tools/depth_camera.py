@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pinhole cameras that measure depth: from pixels to places in the world. Imported by
+sensors_to_npz.py. Pixel (u, v) at depth z, in metres along the optical axis, is at
+    x = (u - cx) z / fx,   y = (v - cy) z / fy,   z
+in the camera's frame (x to the right, y down, z forward, as OpenCV has it)."""
+
+import json
+
+import numpy as np
+
+KEYS = ("fx", "fy", "cx", "cy")
+
+
+class InputError(Exception):
+    """What is wrong with an input, in one line."""
+
+
+class Camera:
+    """fx, fy, cx, cy in pixels; camera_to_world: (4, 4), rotation and place in metres."""
+
+    def __init__(self, path):
+        try:
+            with open(path, encoding="utf-8") as file:
+                text = json.load(file)
+            self.fx, self.fy, self.cx, self.cy = (float(text[key]) for key in KEYS)
+            pose = np.array(text.get("camera_to_world", np.eye(4).tolist()), float)
+        except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError) as error:
+            raise InputError(f"{path}: expected JSON with the numbers {', '.join(KEYS)} and "
+                             f"camera_to_world, 4 rows of 4: {error}") from None
+        if pose.shape != (4, 4) or not np.isfinite(pose).all() or list(pose[3]) != [0, 0, 0, 1]:
+            raise InputError(f"{path}: camera_to_world has the shape {pose.shape}, expected (4, 4) "
+                             "finite numbers, the last row 0 0 0 1")
+        turn = pose[:3, :3]
+        if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) or np.linalg.det(turn) < 0:
+            raise InputError(f"{path}: camera_to_world does not begin with a rotation")
+        if not (0 < self.fx < 1e6 and 0 < self.fy < 1e6 and np.isfinite([self.cx, self.cy]).all()):
+            raise InputError(f"{path}: fx and fy must be positive, cx and cy finite, in pixels")
+        self.turn, self.place = turn, pose[:3, 3]
+
+    def to_world(self, pixels, depth):
+        """pixels: (..., 2) as (u, v); depth: (...), m. Returns (..., 3); NaN where depth is."""
+        u, v = pixels[..., 0], pixels[..., 1]
+        own = np.stack([(u - self.cx) / self.fx * depth, (v - self.cy) / self.fy * depth, depth],
+                       axis=-1)
+        return own @ self.turn.T + self.place
+
+
+def depth_at(image, pixels):
+    """Depth of the pixels nearest to (u, v), (N, 2); NaN outside of the image, or where it is 0."""
+    height, width = image.shape
+    column, row = np.rint(pixels[:, 0]), np.rint(pixels[:, 1])
+    inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    column = np.where(inside, column, 0).astype(int)
+    row = np.where(inside, row, 0).astype(int)
+    depth = image[row, column]
+    return np.where(inside & (depth > 0) & np.isfinite(depth), depth, np.nan)
+
+
+def cloud_of(camera, image, mask, most):
+    """All pixels of the mask that have a depth, at most `most` of them, evenly: (S, 3)."""
+    rows, columns = np.nonzero(mask & (image > 0) & np.isfinite(image))
+    if len(rows) > most:
+        kept = np.linspace(0, len(rows) - 1, most).astype(int)
+        rows, columns = rows[kept], columns[kept]
+    pixels = np.stack([columns, rows], axis=-1).astype(float)
+    return camera.to_world(pixels, image[rows, columns])
