@@ -22,6 +22,7 @@
 #include "twin/atomic_file.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/plausibility.h"
+#include "twin/clock_offset.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
 
@@ -133,11 +134,21 @@ void WriteReport(const ReplayArguments& arguments, const Recording& recording,
   WriteFileAtomically(arguments.json, json.dump(2) + "\n");
 }
 
+// A scene does not say how far the clocks of a recording differ; its twin does.
+void UseClock(const ReplayArguments& arguments, Recording* recording) {
+  if (!recording->two_clocks) return;
+  if (!arguments.twin.empty()) return UseClockOf(ReadTwin(arguments.twin), recording);
+  recording->warnings.push_back(arguments.recording +
+                                ": its controllers have a clock of their own, and without --twin "
+                                "nobody knows how far it is off");
+}
+
 void Run(const ReplayArguments& arguments) {
   const std::string missing = WhyNoPlugin();
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
-  const Recording recording = ReadRecording(arguments.recording);
+  Recording recording = ReadRecording(arguments.recording);
+  UseClock(arguments, &recording);
   ExpectLastingGrasps(recording, "replayed in MuJoCo");
   PrintRemarks({&recording, 1});
   ControllerReplay replay;
