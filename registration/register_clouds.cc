@@ -66,7 +66,7 @@ void CarryBack(const Points& cloud, const Points& now, const Points& start,
     std::vector<int> near;
     for (const Neighbour& one : search.Nearest(point, kNearest)) near.push_back(one.index);
     const Points back = MoveRigidly(now(Eigen::all, near), start(Eigen::all, near), point);
-    if (search_at_start.Nearest(back.col(0), 1)[0].distance < reach) carried->push_back(back);
+    if (search_at_start.Nearest(back.col(0), 1)[0].distance < reach) carried->emplace_back(back);
   }
 }
 
