@@ -47,10 +47,10 @@ void Run(const RegisterArguments& arguments) {
                              : RegisterCloudsLike(clouds, ReadRecording(arguments.like));
   WriteRecording(registered.recording, arguments.output);
   fmt::print("{}: {} points, {:.1f} mm apart; clouds tell of {:.0f} % of them in a frame\n",
-             arguments.output, registered.recording.point_count(), 1e3 * registered.spacing,
+             arguments.output, registered.recording.point_count(), 1e3 * registered.fit.spacing,
              100 * registered.seen);
   fmt::print("clouds are {:.1f} mm from the nearest points, mean of the last second\n",
-             1e3 * registered.distance);
+             1e3 * registered.fit.distance);
   WarnOfDoubts(registered);
 }
 

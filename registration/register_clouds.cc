@@ -10,6 +10,7 @@
 #include "registration/cloud_particles.h"
 #include "registration/followed_body.h"
 #include "tracker/soft_match.h"
+#include "tracker/track_recording.h"
 #include "twin/error.h"
 #include "twin/neighbours.h"
 #include "twin/rotation.h"
@@ -103,29 +104,13 @@ double TellPoints(const std::vector<Points>& position, double width, Recording* 
   return seen / all;
 }
 
-double DistanceOfClouds(const Recording& recording, const std::vector<Points>& position) {
-  const auto last_second = static_cast<std::size_t>(std::ceil(recording.fps));
-  double sum = 0, count = 0;
-  for (std::size_t t = position.size() - std::min(position.size() - 1, last_second);
-       t < position.size(); ++t) {
-    const NeighbourSearch search(position[t]);
-    const Points cloud = PointsOf(recording.surface[t]);
-    for (const auto& point : cloud.colwise()) {
-      sum += search.Nearest(point, 1)[0].distance;
-      ++count;
-    }
-  }
-  return count > 0 ? sum / count : 0;
-}
-
 RegisteredClouds Register(const Recording& recording) {
   RegisteredClouds registered{recording};
   const std::vector<Points> position = FollowClouds(recording);
-  registered.spacing = MedianSpacing(position[0]);
-  registered.distance = DistanceOfClouds(recording, position);
+  registered.fit = FitOfClouds(position, recording);
   const double width = MatchWidth(position[0]);
   registered.seen = TellPoints(position, width, &registered.recording);
-  registered.lost = registered.distance > kLost * width || registered.seen < kFewestTold;
+  registered.lost = registered.fit.distance > kLost * width || registered.seen < kFewestTold;
   return registered;
 }
 

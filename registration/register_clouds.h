@@ -8,6 +8,7 @@
 #ifndef PHYSPRING_REGISTRATION_REGISTER_CLOUDS_H_
 #define PHYSPRING_REGISTRATION_REGISTER_CLOUDS_H_
 
+#include "tracker/track_recording.h"
 #include "twin/recording.h"
 
 namespace physpring {
@@ -15,10 +16,8 @@ namespace physpring {
 struct RegisteredClouds {
   // The clouds' recording with `points`, NaN where no point of the cloud tells of one.
   Recording recording;
-  double seen = 0;  // the part of all points in all frames after frame 0 that clouds tell of
-  // How far the clouds are from the nearest points, mean of the last second, and how far points are
-  // from each other, m.
-  double distance = 0, spacing = 0;
+  double seen = 0;    // the part of all points in all frames after frame 0 that clouds tell of
+  CloudFit fit;       // of the points where they are followed to
   bool lost = false;  // the clouds are not where the points are, or tell of hardly any
   int outliers = 0;   // points of the first cloud that were left out
 };

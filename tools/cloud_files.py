@@ -42,7 +42,8 @@ def header_of(data, last):
 def records(data, begin, count, fields, text):
     """`count` records of (name, type) fields: a dictionary of columns."""
     if not 0 <= count <= min(MOST_POINTS, len(data)):
-        raise ValueError(f"says that it has {count} points, expected no more than the file can hold, and {MOST_POINTS}")
+        raise ValueError(f"says that it has {count} points, expected no more than the file can "
+                         f"hold, and {MOST_POINTS}")
     names = [name for name, _ in fields]
     if len(set(names)) != len(names) or not {"x", "y", "z"} <= set(names):
         raise ValueError(f"has the fields {', '.join(names)}, expected x, y, z among them")

@@ -56,11 +56,15 @@ def depth_at(image, pixels):
     return np.where(inside & (depth > 0) & np.isfinite(depth), depth, np.nan)
 
 
+def thinned(points, most):
+    """At most `most` of the rows, evenly."""
+    if len(points) <= most:
+        return points
+    return points[np.linspace(0, len(points) - 1, most).astype(int)]
+
+
 def cloud_of(camera, image, mask, most):
     """All pixels of the mask that have a depth, at most `most` of them, evenly: (S, 3)."""
-    rows, columns = np.nonzero(mask & (image > 0) & np.isfinite(image))
-    if len(rows) > most:
-        kept = np.linspace(0, len(rows) - 1, most).astype(int)
-        rows, columns = rows[kept], columns[kept]
+    rows, columns = thinned(np.argwhere(mask & (image > 0) & np.isfinite(image)), most).T
     pixels = np.stack([columns, rows], axis=-1).astype(float)
     return camera.to_world(pixels, image[rows, columns])

@@ -20,7 +20,7 @@ except ImportError:
     sys.exit("sensors_to_npz: error: needs numpy (apt-get install python3-numpy)")
 
 from cloud_files import read_cloud
-from depth_camera import Camera, InputError, cloud_of, depth_at
+from depth_camera import Camera, InputError, cloud_of, depth_at, thinned
 from sensor_files import array_of_npz, images_in, read_tracks
 
 EXAMPLES = """examples:
@@ -90,13 +90,7 @@ def clouds_of_folder(options):
                    (".npy", ".ply", ".pcd"))
     if len(files) < 2:
         raise InputError(f"{folder}: has {len(files)} clouds (.npy, .ply, .pcd), expected 2 or more")
-    clouds = []
-    for path in files:
-        cloud = read_cloud(path)
-        if len(cloud) > options.most:
-            cloud = cloud[np.linspace(0, len(cloud) - 1, options.most).astype(int)]
-        clouds.append(cloud)
-    return padded(clouds)
+    return padded([thinned(read_cloud(path), options.most) for path in files])
 
 
 def markers_of_c3d(options):

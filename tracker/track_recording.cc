@@ -127,7 +127,15 @@ double InterpolationError(const Recording& recording, const std::vector<int>& hi
   return ErrorOf(placed, recording, hidden);
 }
 
-CloudFit FitOf(const std::vector<Points>& position, const Recording& recording) {
+void ExpectSomethingToFollow(const Recording& recording, const TrackOptions& options) {
+  if (options.cloud && recording.surface.empty()) {
+    throw Error(fmt::format("recording {}: has no 'surface' to follow", recording.name));
+  }
+}
+
+}  // namespace
+
+CloudFit FitOfClouds(const std::vector<Points>& position, const Recording& recording) {
   const std::size_t frames = position.size();
   const std::size_t last_second =
       std::min(frames - 1, static_cast<std::size_t>(std::ceil(recording.fps)));
@@ -143,14 +151,6 @@ CloudFit FitOf(const std::vector<Points>& position, const Recording& recording) 
   const bool alone = position[0].cols() < 2;
   return {count > 0 ? sum / count : 0, alone ? 0 : MedianSpacing(position[0])};
 }
-
-void ExpectSomethingToFollow(const Recording& recording, const TrackOptions& options) {
-  if (options.cloud && recording.surface.empty()) {
-    throw Error(fmt::format("recording {}: has no 'surface' to follow", recording.name));
-  }
-}
-
-}  // namespace
 
 TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
                              const TrackOptions& options) {
@@ -182,7 +182,7 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   motion.errors = {ErrorOf(motion.position, recording, motion.hidden),
                    PredictionError(twin, recording, motion.hidden),
                    options.cloud ? kNotSeen : InterpolationError(recording, motion.hidden)};
-  if (options.cloud) motion.cloud = FitOf(motion.position, recording);
+  if (options.cloud) motion.cloud = FitOfClouds(motion.position, recording);
   return motion;
 }
 

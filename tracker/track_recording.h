@@ -41,6 +41,9 @@ struct TrackedMotion {
   double frames_per_second = 0;  // of processor time, by one thread
 };
 
+// Of particles that are at `position`, T frames of 3 x particles, m, in the recording's clouds.
+CloudFit FitOfClouds(const std::vector<Points>& position, const Recording& recording);
+
 // Level 0 of the twin. Throws Error where the recording does not fit the twin, where it has nothing
 // to follow, and where the motion diverges.
 TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,

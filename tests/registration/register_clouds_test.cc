@@ -114,7 +114,7 @@ TEST(RegisterClouds, FollowsPointsOfAClothWhoseCloudsHaveNoNames) {
   EXPECT_EQ(registered.recording.point_count(), 300);
   EXPECT_TRUE(registered.recording.points[0].allFinite());
   EXPECT_GT(registered.seen, 0.4);
-  EXPECT_LT(registered.distance, registered.spacing);
+  EXPECT_LT(registered.fit.distance, registered.fit.spacing);
   const double off = OffTruth(registered.recording, truth);
   EXPECT_LT(off, 0.4 * kSpacing);
   EXPECT_LT(off, 0.2 * OwnMotion(truth));
@@ -135,7 +135,7 @@ TEST(RegisterClouds, TakesThePointsOfAnotherRecording) {
   const Recording known = RegisterClouds(CloudsOf(first, 1), 100).recording;
   const RegisteredClouds like = RegisterCloudsLike(CloudsOf(second, 2), known);
   ASSERT_EQ(like.recording.point_count(), 100);
-  EXPECT_LT(like.distance, like.spacing);
+  EXPECT_LT(like.fit.distance, like.fit.spacing);
   EXPECT_LT(OffTruth(like.recording, second), 0.4 * kSpacing);
   // the same points of the cloth: both recordings start at rest, in places that are known
   const Points placed = MoveRigidly(first.start, second.start, known.points[0]);

@@ -14,13 +14,6 @@
 namespace physpring {
 namespace {
 
-bool HasForceIn(const Recording& recording) {
-  const auto end = recording.force.begin() +
-                   std::min<std::ptrdiff_t>(recording.train_frames, std::ssize(recording.force));
-  return std::any_of(recording.force.begin(), end,
-                     [](const Eigen::MatrixXd& frame) { return (!frame.array().isNaN()).any(); });
-}
-
 // The forces with which the controllers pull at the springs, 3 x controllers, N.
 Points ForcesOfControllers(const SpringMassSystem& system, const Points& position,
                            const Points& velocity, const Points& hands, const Points& hand_velocity,
@@ -123,7 +116,7 @@ void Scale(double factor, Material* material) {
 void ScaleToForces(const FitData& data, Twin* twin) {
   Sums sums;
   for (const Recording& recording : data.recordings) {
-    if (HasForceIn(recording)) AddRecording(*twin, recording, &sums);
+    if (!recording.force.empty()) AddRecording(*twin, recording, &sums);
   }
   if (!sums.Agree()) return;
   const double factor = sums.Factor();
