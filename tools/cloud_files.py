@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from depth_camera import InputError
+from safe_pickle import Error
 
 MOST_POINTS, MOST_FIELDS = 5_000_000, 100
 PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "<i2",
@@ -16,14 +16,14 @@ PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": 
 
 
 def read_cloud(path):
-    """(S, 3), m; points that are not finite are left out. Raises InputError."""
+    """(S, 3), m; points that are not finite are left out. Raises Error."""
     readers = {".npy": read_npy, ".ply": read_ply, ".pcd": read_pcd}
     try:
         cloud = np.asarray(readers[path.suffix.lower()](path), float)
     except (OSError, ValueError, TypeError, KeyError, IndexError, MemoryError) as error:
-        raise InputError(f"{path}: cannot be read as a cloud: {str(error)[:200]}") from None
+        raise Error(f"{path}: cannot be read as a cloud: {str(error)[:200]}") from None
     if cloud.ndim != 2 or cloud.shape[1] != 3:
-        raise InputError(f"{path}: has the shape {cloud.shape}, expected (points, 3)")
+        raise Error(f"{path}: has the shape {cloud.shape}, expected (points, 3)")
     return cloud[np.isfinite(cloud).all(axis=1)]
 
 

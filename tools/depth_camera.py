@@ -8,11 +8,9 @@ import json
 
 import numpy as np
 
+from safe_pickle import Error
+
 KEYS = ("fx", "fy", "cx", "cy")
-
-
-class InputError(Exception):
-    """What is wrong with an input, in one line."""
 
 
 class Camera:
@@ -25,16 +23,16 @@ class Camera:
             self.fx, self.fy, self.cx, self.cy = (float(text[key]) for key in KEYS)
             pose = np.array(text.get("camera_to_world", np.eye(4).tolist()), float)
         except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError) as error:
-            raise InputError(f"{path}: expected JSON with the numbers {', '.join(KEYS)} and "
+            raise Error(f"{path}: expected JSON with the numbers {', '.join(KEYS)} and "
                              f"camera_to_world, 4 rows of 4: {error}") from None
         if pose.shape != (4, 4) or not np.isfinite(pose).all() or list(pose[3]) != [0, 0, 0, 1]:
-            raise InputError(f"{path}: camera_to_world has the shape {pose.shape}, expected (4, 4) "
+            raise Error(f"{path}: camera_to_world has the shape {pose.shape}, expected (4, 4) "
                              "finite numbers, the last row 0 0 0 1")
         turn = pose[:3, :3]
         if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) or np.linalg.det(turn) < 0:
-            raise InputError(f"{path}: camera_to_world does not begin with a rotation")
+            raise Error(f"{path}: camera_to_world does not begin with a rotation")
         if not (0 < self.fx < 1e6 and 0 < self.fy < 1e6 and np.isfinite([self.cx, self.cy]).all()):
-            raise InputError(f"{path}: fx and fy must be positive, cx and cy finite, in pixels")
+            raise Error(f"{path}: fx and fy must be positive, cx and cy finite, in pixels")
         self.turn, self.place = turn, pose[:3, 3]
 
     def to_world(self, pixels, depth):

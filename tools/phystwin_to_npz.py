@@ -8,7 +8,6 @@ docs/phystwin.md says more. Needs Python 3.9 and numpy; runs no code that a pick
 """
 
 import argparse
-import io
 import json
 import os
 import pathlib
@@ -20,6 +19,7 @@ except ImportError:
     sys.exit("phystwin_to_npz: error: needs numpy (apt-get install python3-numpy)")
 
 import phystwin_case
+from npz_files import npz_bytes, write_files
 from phystwin_settings import LEAST_FPS, MOST_FPS, read_settings
 from phystwin_twin import DEFAULT_MASS, GRAVITY, convert_twin
 from safe_pickle import Error
@@ -74,39 +74,12 @@ def meta_of(case, name, recording_bytes):
     return np.frombuffer(json.dumps(meta, indent=1).encode(), np.uint8)
 
 
-def npz_bytes(arrays):
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
-    return buffer.getvalue()
-
-
 def hash_bytes(data):
     """FNV-1a, 64 bits: how twins tell recordings apart."""
     value = 0xCBF29CE484222325
     for byte in data:
         value = ((value ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
     return f"{value:016x}"
-
-
-def write_files(files):
-    """Writes {path: bytes}: all of them whole, or none."""
-    for path in files:
-        if path.is_dir():
-            raise Error(f"{path}: is a folder")
-    temporary = {path: path.with_name(f".{path.name}.{os.getpid()}.tmp") for path in files}
-    try:
-        for path, data in files.items():
-            with open(temporary[path], "xb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-        for path in files:
-            os.replace(temporary[path], path)
-    except OSError as error:
-        raise Error(f"{path}: {error.strerror}") from None
-    finally:
-        for path in temporary.values():
-            path.unlink(missing_ok=True)
 
 
 def find_one(patterns):

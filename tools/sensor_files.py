@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 
-from depth_camera import InputError
+from safe_pickle import Error
 
 
 def load_array(path, what):
@@ -16,10 +16,10 @@ def load_array(path, what):
         if not isinstance(loaded, np.ndarray):
             loaded = {name: loaded[name] for name in loaded.files}
     except (OSError, ValueError, EOFError, MemoryError, zipfile.BadZipFile, zlib.error) as error:
-        raise InputError(f"{path}: cannot be read as {what}: {str(error)[:200]}") from None
+        raise Error(f"{path}: cannot be read as {what}: {str(error)[:200]}") from None
     for array in loaded.values() if isinstance(loaded, dict) else [loaded]:
         if array.dtype.kind not in "buif":
-            raise InputError(f"{path}: has the type {array.dtype}, expected real numbers ({what})")
+            raise Error(f"{path}: has the type {array.dtype}, expected real numbers ({what})")
     return loaded
 
 
@@ -31,7 +31,7 @@ def array_of_npz(path, names, what):
     for name in names:
         if name in loaded:
             return loaded[name]
-    raise InputError(f"{path}: has none of the arrays {', '.join(names)} ({what}), but "
+    raise Error(f"{path}: has none of the arrays {', '.join(names)} ({what}), but "
                      f"{', '.join(loaded)}")
 
 
@@ -41,7 +41,7 @@ def images_in(folder, unit):
     files = sorted(path for path in folder.glob("*") if path.suffix.lower() in (".npy", ".png"))
     shape = None
     if not files:
-        raise InputError(f"{folder}: has no images *.npy or *.png")
+        raise Error(f"{folder}: has no images *.npy or *.png")
     for path in files:
         if path.suffix.lower() == ".npy":
             image = load_array(path, "an image")
@@ -50,16 +50,16 @@ def images_in(folder, unit):
                 from PIL import Image
                 image = np.asarray(Image.open(path))
             except ImportError:
-                raise InputError(f"{path}: needs Pillow (pip install pillow)") from None
+                raise Error(f"{path}: needs Pillow (pip install pillow)") from None
             except (OSError, ValueError, SyntaxError) as error:
-                raise InputError(f"{path}: cannot be read: {error}") from None
+                raise Error(f"{path}: cannot be read: {error}") from None
         if image.ndim == 3 and unit is None:  # a mask in colours
             image = image.max(axis=2)
         if image.ndim != 2:
-            raise InputError(f"{path}: has the shape {image.shape}, expected (height, width)")
+            raise Error(f"{path}: has the shape {image.shape}, expected (height, width)")
         shape = shape or image.shape
         if image.shape != shape:
-            raise InputError(f"{path}: has the shape {image.shape}, but {files[0].name} {shape}")
+            raise Error(f"{path}: has the shape {image.shape}, but {files[0].name} {shape}")
         yield image if unit is None else image * unit
 
 
@@ -71,21 +71,21 @@ def read_tracks(path):
         loaded = {"tracks": loaded}
     tracks = np.array(loaded["tracks"], float) if "tracks" in loaded else None
     if tracks is None:
-        raise InputError(f"{path}: has no array 'tracks'")
+        raise Error(f"{path}: has no array 'tracks'")
     seen = np.array(loaded["visibility"]) > 0.5 if "visibility" in loaded else None
     if "occluded" in loaded and tracks.ndim >= 3 and np.ndim(loaded["occluded"]) >= 2:
         tracks, seen = np.swapaxes(tracks, -3, -2), ~np.swapaxes(
             np.array(loaded["occluded"]) > 0.5, -2, -1)
     if tracks.ndim < 3:
-        raise InputError(f"{path}: array 'tracks' has the shape {tracks.shape}, expected (T, N, 2)")
+        raise Error(f"{path}: array 'tracks' has the shape {tracks.shape}, expected (T, N, 2)")
     while tracks.ndim > 3 and tracks.shape[0] == 1:
         tracks = tracks[0]
     if tracks.ndim != 3 or tracks.shape[2] != 2:
-        raise InputError(f"{path}: array 'tracks' has the shape {tracks.shape}, expected (T, N, 2)")
+        raise Error(f"{path}: array 'tracks' has the shape {tracks.shape}, expected (T, N, 2)")
     if seen is not None:
         seen = seen.reshape(seen.shape[-2:]) if seen.size == tracks.size // 2 else None
         if seen is None or seen.shape != tracks.shape[:2]:
-            raise InputError(f"{path}: visibility does not have a value for each of the "
+            raise Error(f"{path}: visibility does not have a value for each of the "
                              f"{tracks.shape[0]} x {tracks.shape[1]} track points")
         tracks[~seen] = np.nan
     return tracks

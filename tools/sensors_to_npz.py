@@ -9,8 +9,6 @@ Clouds go through `physpring register` next. docs/sensors.md says where the arra
 Python 3.9 and numpy; Pillow for .png images; ezc3d for c3d."""
 
 import argparse
-import io
-import os
 import pathlib
 import sys
 
@@ -20,7 +18,9 @@ except ImportError:
     sys.exit("sensors_to_npz: error: needs numpy (apt-get install python3-numpy)")
 
 from cloud_files import read_cloud
-from depth_camera import Camera, InputError, cloud_of, depth_at, thinned
+from depth_camera import Camera, cloud_of, depth_at, thinned
+from npz_files import npz_bytes, write_files
+from safe_pickle import Error
 from sensor_files import array_of_npz, images_in, read_tracks
 
 EXAMPLES = """examples:
@@ -49,7 +49,7 @@ def points_of_view(view, options):
         pixels = tracks[count - 1]
         points[count - 1] = camera.to_world(pixels, depth_at(image, np.nan_to_num(pixels, nan=-9)))
     if count != len(tracks):
-        raise InputError(f"{folder}: has {'more' if count > len(tracks) else count} depth images, "
+        raise Error(f"{folder}: has {'more' if count > len(tracks) else count} depth images, "
                          f"but {tracks_file} has {len(tracks)} frames")
     return points
 
@@ -57,7 +57,7 @@ def points_of_view(view, options):
 def joined_frames(of_views, what):
     """Arrays (T, n, 3) of several views, side by side."""
     if len({len(one) for one in of_views}) > 1:
-        raise InputError(f"views differ in their number of {what} frames: "
+        raise Error(f"views differ in their number of {what} frames: "
                          f"{', '.join(str(len(one)) for one in of_views)}")
     return np.concatenate(of_views, axis=1)
 
@@ -66,7 +66,7 @@ def padded(clouds):
     """(T, S, 3), filled up with NaN."""
     most = max(len(cloud) for cloud in clouds)
     if most == 0:
-        raise InputError("no frame has any point: are masks and depth of the same frames?")
+        raise Error("no frame has any point: are masks and depth of the same frames?")
     frames = np.full((len(clouds), most, 3), np.nan)
     for frame, cloud in zip(frames, clouds):
         frame[:len(cloud)] = cloud
@@ -78,7 +78,7 @@ def clouds_of_view(view, options):
     camera = Camera(camera_file)
     masks, images = list(images_in(masks, None)), list(images_in(folder, options.depth_unit))
     if len(masks) != len(images) or masks[0].shape != images[0].shape:
-        raise InputError(f"{view[0]}: has {len(masks)} masks of {masks[0].shape}, but {folder} "
+        raise Error(f"{view[0]}: has {len(masks)} masks of {masks[0].shape}, but {folder} "
                          f"{len(images)} depth images of {images[0].shape}")
     return padded([cloud_of(camera, image, mask > 0, options.most)
                    for mask, image in zip(masks, images)])
@@ -89,7 +89,7 @@ def clouds_of_folder(options):
     files = sorted(path for path in folder.glob("*") if path.suffix.lower() in
                    (".npy", ".ply", ".pcd"))
     if len(files) < 2:
-        raise InputError(f"{folder}: has {len(files)} clouds (.npy, .ply, .pcd), expected 2 or more")
+        raise Error(f"{folder}: has {len(files)} clouds (.npy, .ply, .pcd), expected 2 or more")
     return padded([thinned(read_cloud(path), options.most) for path in files])
 
 
@@ -98,23 +98,23 @@ def markers_of_c3d(options):
     try:
         import ezc3d
     except ImportError:
-        raise InputError("c3d needs ezc3d (pip install ezc3d)") from None
+        raise Error("c3d needs ezc3d (pip install ezc3d)") from None
     try:
         take = ezc3d.c3d(options.file)
     except (OSError, RuntimeError, ValueError) as error:
-        raise InputError(f"{options.file}: cannot be read: {error}") from None
+        raise Error(f"{options.file}: cannot be read: {error}") from None
     group = take["parameters"]["POINT"]
     labels = [str(label).strip() for label in group["LABELS"]["value"]]
     unit = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}.get((group["UNITS"]["value"] or ["mm"])[0].strip())
     if unit is None:
-        raise InputError(f"{options.file}: has the units {group['UNITS']['value']}, expected mm, "
+        raise Error(f"{options.file}: has the units {group['UNITS']['value']}, expected mm, "
                          "cm or m")
     places = unit * np.transpose(take["data"]["points"][:3], (2, 1, 0))
     places[~np.isfinite(places).all(axis=2)] = np.nan
     held = list(dict.fromkeys(name for name in (options.held or "").split(",") if name))
     for name in held:
         if name not in labels:
-            raise InputError(f"{options.file}: has no marker {name}, but {', '.join(labels)}")
+            raise Error(f"{options.file}: has no marker {name}, but {', '.join(labels)}")
     hands = [labels.index(name) for name in held]
     others = [i for i in range(places.shape[1]) if i not in hands]
     return places[:, others], places[:, hands], float(group["RATE"]["value"][0])
@@ -130,7 +130,7 @@ def filled_in(path):
     for place in path.reshape(len(path), -1).T:
         known = np.isfinite(place)
         if not known.any():
-            raise InputError("a controller is not seen in any frame")
+            raise Error("a controller is not seen in any frame")
         place[~known] = np.interp(frames[~known], frames[known], place[known])
     return path
 
@@ -144,7 +144,7 @@ def controllers_of(options, frames):
     if path.ndim == 2:
         path = path[:, None]
     if path.ndim != 3 or path.shape[2] != 3 or len(path) != frames:
-        raise InputError(f"{options.controllers}: has the shape {path.shape}, expected "
+        raise Error(f"{options.controllers}: has the shape {path.shape}, expected "
                          f"({frames}, C, 3)")
     return path
 
@@ -155,7 +155,7 @@ def recording_of(options):
         arrays["points"], controllers, rate = markers_of_c3d(options)
         options.fps = options.fps or rate
         if options.held and options.controllers:
-            raise InputError("--held and --controllers exclude each other")
+            raise Error("--held and --controllers exclude each other")
         if not options.held:
             controllers = controllers_of(options, len(arrays["points"]))
     elif options.kind == "tracks":
@@ -170,13 +170,13 @@ def recording_of(options):
     if options.kind != "c3d":
         controllers = controllers_of(options, len(measured))
     if not options.fps:
-        raise InputError("--fps is needed")
+        raise Error("--fps is needed")
     arrays["controllers"] = filled_in(controllers)
     if "points" in arrays:  # what no frame shows is no point
         ever = np.isfinite(arrays["points"]).all(axis=2).any(axis=0)
         arrays["points"] = arrays["points"][:, ever]
         if not ever.any():
-            raise InputError("no point is visible with a depth in any frame: are tracks, depth and "
+            raise Error("no point is visible with a depth in any frame: are tracks, depth and "
                              "camera of the same pictures?")
     if options.up == "y":
         arrays = {name: np.stack([p[..., 0], -p[..., 2], p[..., 1]], axis=-1)
@@ -204,7 +204,7 @@ def whole(text):
 
 def parse(arguments):
     common = argparse.ArgumentParser(add_help=False)
-    common.add_argument("-o", "--output", required=True, metavar="REC.npz")
+    common.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="REC.npz")
     common.add_argument("--controllers", metavar="FILE",
                         help="where what holds the object is, m: (T, C, 3) in a .npy, or array "
                              "'controllers' of a .npz")
@@ -234,28 +234,14 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
-def write(arrays, path, force):
-    if os.path.exists(path) and not force:
-        raise InputError(f"{path}: is there already; --force overwrites it")
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
-    draft = f"{path}.{os.getpid()}.tmp"
-    try:
-        with open(draft, "wb") as file:
-            file.write(buffer.getvalue())
-        os.replace(draft, path)
-    except OSError as error:
-        if os.path.exists(draft):
-            os.remove(draft)
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
-
-
 def main(arguments=None):
     options = parse(arguments)
     try:
+        if options.output.exists() and not options.force:
+            raise Error(f"{options.output}: is there already; --force overwrites it")
         arrays = recording_of(options)
-        write(arrays, options.output, options.force)
-    except InputError as error:
+        write_files({options.output: npz_bytes(arrays)})
+    except Error as error:
         sys.exit(f"sensors_to_npz: error: {error}")
     shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items()
                        if array.ndim == 3)
