@@ -191,7 +191,7 @@ void Run(const DiagnoseArguments& arguments) {
   std::vector<Recording> before = RecordingsBefore(arguments, twin, data, judged);
   for (std::vector<Recording>* recordings : {&data.recordings, &judged, &before}) {
     for (Recording& recording : *recordings) {
-      ExpectLastingGrasps(recording, "diagnosed");
+      ExpectLastingGrasps(recording);
       WarnOfOddNumbering(twin, recording.name, &recording);
     }
     PrintRemarks(*recordings);

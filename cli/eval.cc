@@ -23,6 +23,7 @@
 #include "twin/clock_offset.h"
 #include "twin/dataset.h"
 #include "twin/numbering.h"
+#include "twin/regrasp.h"
 
 namespace physpring {
 namespace {
@@ -43,26 +44,16 @@ CLI::Validator EndsWithHtml() {
       "");
 }
 
-// A grasp takes hold where it begins, at the distances of that moment; the twin knows those of the
-// recordings that it was trained on.
-void WarnOfLateGrasps(const Twin& twin, const std::string& path, Recording* recording) {
-  if (recording->held.size() == 0 || recording->held.row(0).all()) return;
-  if (twin.TrainingOn(recording->hash)) return;
-  recording->warnings.push_back(
-      path +
-      ": grasps that begin late take hold at the distances that they had in the training; what is "
-      "predicted after them is uncertain");
-}
-
 EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
                                 const PredictOptions& options) {
   EvaluatedRecording evaluated;
   evaluated.path = entry.path;
   evaluated.recording = ReadRecordingFor(twin, entry.path);
   evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
-  WarnOfOddNumbering(twin, entry.path, &evaluated.recording);
-  WarnOfLateGrasps(twin, entry.path, &evaluated.recording);
-  evaluated.result = Evaluate(twin, evaluated.recording, options);
+  ExpectSameObject(twin, evaluated.recording);
+  const Twin held = HeldAsIn(&evaluated.recording, twin);
+  WarnOfOddNumbering(held, entry.path, &evaluated.recording);
+  evaluated.result = Evaluate(held, evaluated.recording, options);
   return evaluated;
 }
 

@@ -149,7 +149,6 @@ void Run(const ReplayArguments& arguments) {
                 {arguments.scene, arguments.recording, arguments.twin});
   Recording recording = ReadRecording(arguments.recording);
   UseClock(arguments, &recording);
-  ExpectLastingGrasps(recording, "replayed in MuJoCo");
   PrintRemarks({&recording, 1});
   ControllerReplay replay;
   try {

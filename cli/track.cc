@@ -14,6 +14,7 @@
 #include "tracker/track_recording.h"
 #include "twin/clock_offset.h"
 #include "twin/npz_fields.h"
+#include "twin/regrasp.h"
 
 namespace physpring {
 namespace {
@@ -62,8 +63,10 @@ void WarnIfUseless(const TrackedMotion& motion) {
 void Run(const TrackArguments& arguments) {
   ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
   ExpectNew(arguments.output, arguments.force);
-  const Twin twin = ReadTwin(arguments.twin);
-  const Recording recording = ReadRecordingFor(twin, arguments.recording);
+  const Twin trained = ReadTwin(arguments.twin);
+  Recording recording = ReadRecordingFor(trained, arguments.recording);
+  ExpectSameObject(trained, recording);
+  const Twin twin = HeldAsIn(&recording, trained);
   PrintRemarks({&recording, 1});
   const TrackedMotion motion = TrackRecording(twin, recording, arguments.options);
   Npz arrays;

@@ -63,12 +63,11 @@ void PrintRemarks(std::span<const Recording> recordings) {
   for (const std::string& note : JoinAlike(notes)) Tell("note: {}\n", note);
 }
 
-void ExpectLastingGrasps(const Recording& recording, const char* done) {
+void ExpectLastingGrasps(const Recording& recording) {
   if (recording.held.size() == 0 || recording.held.all()) return;
-  throw Error(
-      fmt::format("recording {}: has grasps that begin or end ('held'), which cannot be {} "
-                  "yet",
-                  recording.name, done));
+  throw Error(fmt::format(
+      "recording {}: has grasps that begin or end ('held'), which cannot be diagnosed yet",
+      recording.name));
 }
 
 }  // namespace physpring

@@ -23,8 +23,8 @@ std::vector<std::string> WarningsOf(std::span<const Recording> recordings);
 // The recordings' warnings and notes.
 void PrintRemarks(std::span<const Recording> recordings);
 
-// Throws Error for a recording with grasps that begin or end: these cannot be `done` yet.
-void ExpectLastingGrasps(const Recording& recording, const char* done);
+// Throws Error for a recording with grasps that begin or end: these cannot be diagnosed yet.
+void ExpectLastingGrasps(const Recording& recording);
 
 }  // namespace physpring
 

@@ -48,8 +48,9 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
   return name;
 }
 
-SpringKind ChooseSprings(const SpringMassSystem& system, SpringKind asked) {
+SpringKind ChooseSprings(const Twin& twin, const SpringMassSystem& system, SpringKind asked) {
   if (asked != SpringKind::kAuto) return asked;
+  if (!twin.late.empty() && system.controllers > 0) return SpringKind::kPlugin;
   const bool left_out = std::any_of(
       system.effects.begin(), system.effects.end(), [&system](const EffectValues& values) {
         return GetEffect(values.name).Mjcf(values.values, system).carrier ==
@@ -147,11 +148,16 @@ LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
   plan.twin = &twin;
   plan.level = level;
   plan.name = ChooseName(twin, options);
-  plan.springs = ChooseSprings(twin.levels[level].system, options.springs);
+  plan.springs = ChooseSprings(twin, twin.levels[level].system, options.springs);
   plan.controllers = ChooseControllers(twin, plan.springs, options.controllers);
   plan.contact = ChooseContact(plan.springs, options.contact);
   plan.flexes = options.flexes;
   PlanEffects(&plan);
+  if (!twin.late.empty() && plan.system().controllers > 0 && plan.springs != SpringKind::kPlugin) {
+    plan.differences.push_back(
+        "grasps that begin late hold from the start: only the plugin opens "
+        "them");
+  }
   ChooseTimesteps(options, &plan);
   return plan;
 }

@@ -58,6 +58,10 @@ void AddSpringKeys(const LevelPlan& plan, XmlElement* instance) {
   }
   if (system.order.size() > 0) AddConfig(instance, kAttrOrder, Numbers(system.order));
   AddConfig(instance, kAttrControllerVelocity, plan.twin->controller_velocity ? "1" : "0");
+  const ControllerMask& late = plan.twin->late;
+  if (!late.empty()) {
+    AddConfig(instance, kAttrReleased, Numbers(std::vector<int>(late.begin(), late.end())));
+  }
 }
 
 void AddContactKeys(const LevelPlan& plan, XmlElement* instance) {

@@ -71,6 +71,14 @@ std::string DescribeDifferences(const std::vector<ExportedLevel>& levels) {
   return text.empty() ? "" : "Where it differs from the trained twin:\n" + text + "\n";
 }
 
+// How grasps open and close.
+std::string DescribeReleases(const LevelPlan& plan) {
+  if (plan.twin->late.empty() || plan.springs != SpringKind::kPlugin) return "";
+  return "`data.plugin_state` begins with a number for each controller: 0 holds, 1 lets go. Those "
+         "that take hold late in the recording begin with 1. A controller that takes hold again "
+         "holds the object as it is then.\n\n";
+}
+
 std::string DescribeControllers(const LevelPlan& plan) {
   if (plan.system().controllers == 0) return "";
   if (plan.controllers == ControllerKind::kMocap) {
@@ -161,9 +169,10 @@ Node `i` is the body and the site `{0}_i`; `qpos` is its displacement from the r
 )",
                      plan.name, plan.twin->trained_on.empty() ? "a recording" : "recordings",
                      PHYSPRING_VERSION, command, FormatTable(levels), DescribeSprings(plan),
-                     DescribeContact(plan), DescribeControllers(plan), levels[0].model,
-                     DescribeDifferences(levels), Number(plan.timestep), ConeAttribute(plan),
-                     TimestepLimit(plan), DescribeFloor(plan), DescribeVersion(levels));
+                     DescribeContact(plan), DescribeControllers(plan) + DescribeReleases(plan),
+                     levels[0].model, DescribeDifferences(levels), Number(plan.timestep),
+                     ConeAttribute(plan), TimestepLimit(plan), DescribeFloor(plan),
+                     DescribeVersion(levels));
 }
 
 }  // namespace physpring

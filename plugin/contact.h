@@ -35,6 +35,7 @@ class LevelContact {
 
   static int StateSize(const mjModel*, int) { return 0; }
 
+  void Reset(int, double*) const {}
   void Compute(const mjModel* model, mjData* data, int instance);
   void Advance(const mjModel*, mjData*, int) {}
 

@@ -44,8 +44,9 @@ void Copy(mjData* to, const mjModel*, const mjData* from, int instance) {
   to->plugin_data[instance] = reinterpret_cast<uintptr_t>(new Plugin(*Get<Plugin>(from, instance)));
 }
 
-void Reset(const mjModel* model, mjtNum* state, void*, int instance) {
-  std::fill(state, state + model->plugin_statenum[instance], 0);
+template <class Plugin>
+void Reset(const mjModel* model, mjtNum* state, void* plugin, int instance) {
+  static_cast<const Plugin*>(plugin)->Reset(model->plugin_statenum[instance], state);
 }
 
 template <class Plugin>
@@ -74,7 +75,7 @@ void Register() {
   plugin.init = Init<Plugin>;
   plugin.destroy = Destroy<Plugin>;
   plugin.copy = Copy<Plugin>;
-  plugin.reset = Reset;
+  plugin.reset = Reset<Plugin>;
   plugin.compute = Compute<Plugin>;
   plugin.advance = [](const mjModel* model, mjData* data, int instance) {
     Get<Plugin>(data, instance)->Advance(model, data, instance);

@@ -26,6 +26,21 @@ Level ReadLevelWithSprings(const mjModel* model, int instance, const Attributes&
 
 constexpr double kMostSubsteps = 1e6;  // in a step
 
+ControllerMask ReadReleased(const SpringMassSystem& system, const Attributes& attributes) {
+  ControllerMask released(static_cast<std::size_t>(system.controllers), false);
+  if (!attributes.Has(kAttrReleased)) return released;
+  const Eigen::VectorXd flags = attributes.Each(kAttrReleased, system.controllers);
+  for (std::size_t c = 0; c < released.size(); ++c) {
+    const double flag = flags[static_cast<Eigen::Index>(c)];
+    if (flag != 0 && flag != 1) {
+      throw Error(
+          fmt::format("{}: released[{}] is {}, expected 0 or 1", attributes.where(), c, flag));
+    }
+    released[c] = flag == 1;
+  }
+  return released;
+}
+
 double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes) {
   const double stable = ComputeStabilityBound(system).timestep;
   const double substep = attributes.Number(kAttrSubstep, kSafety * stable);
@@ -36,9 +51,13 @@ double ReadSubstep(const SpringMassSystem& system, const Attributes& attributes)
                   attributes.where(), substep, stable));
 }
 
-// Numbers of a state without internal variables.
 int PlainStateSize(const LevelBodies& bodies) {
-  return 3 * static_cast<int>(bodies.nodes.size() + bodies.controllers.size()) + 1;
+  return PluginState::PlainSize(static_cast<int>(bodies.nodes.size()),
+                                static_cast<int>(bodies.controllers.size()));
+}
+
+ControllerMask All(const SpringMassSystem& system) {
+  return ControllerMask(static_cast<std::size_t>(system.controllers), true);
 }
 
 // Between the particles only: MuJoCo finds the rest.
@@ -49,13 +68,15 @@ Environment Nothing() { return {Vector::Zero(), {}}; }
 SpringsModel::SpringsModel(const mjModel* model, int instance)
     : level(ReadLevelWithSprings(model, instance, Attributes(model, instance))),
       controller_velocity(Attributes(model, instance).Flag(kAttrControllerVelocity, true)),
+      released(ReadReleased(level.system, Attributes(model, instance))),
       substep(ReadSubstep(level.system, Attributes(model, instance))),
-      step(level.system, Nothing(), BestKernel<double>()) {}
+      step(level.system, Nothing(), BestKernel<double>()),
+      grasps(level.system, All(level.system), step.springs(), step.state_size()) {}
 
 const std::vector<const char*>& Springs::AttributeNames() {
   static const std::vector<const char*> names = WithLevelNumbers(
       {kAttrNodes, kAttrControllers, kAttrSprings, kAttrOrder, kAttrEffects, kAttrSubstep,
-       kAttrControllerVelocity, kAttrCone},
+       kAttrControllerVelocity, kAttrReleased, kAttrCone},
       {NumberRole::kSprings, NumberRole::kSurface, NumberRole::kObject, NumberRole::kReach});
   return names;
 }
@@ -63,7 +84,9 @@ const std::vector<const char*>& Springs::AttributeNames() {
 Springs::Springs(const mjModel* model, int instance)
     : springs_(std::make_shared<SpringsModel>(model, instance)),
       surfaces_(model, instance, springs_->level),
-      state_(springs_->step.state_size()),
+      released_(springs_->level.bodies.controllers.size(), false),
+      rest_length_(springs_->step.effects().changed().system.rest_length),
+      state_(springs_->state_size()),
       next_(state_.size()),
       buffers_(springs_->step.springs()),
       ways_(springs_->level.bodies.controllers.size()),
@@ -84,12 +107,21 @@ Springs::Springs(const mjModel* model, int instance)
 }
 
 int Springs::StateSize(const mjModel* model, int instance) {
-  const int size = PlainStateSize(FindBodies(model, instance));
-  if (!Attributes(model, instance).Has(kAttrEffects)) return size;
+  const LevelBodies bodies = FindBodies(model, instance);
+  const int size = PlainStateSize(bodies);
+  if (bodies.controllers.empty() && !Attributes(model, instance).Has(kAttrEffects)) return size;
   try {
     return size + SpringsModel(model, instance).internal_size();
   } catch (const std::exception&) {
     return size;  // refused, with a message, when an instance is made
+  }
+}
+
+void Springs::Reset(int size, double* state) const {
+  std::fill_n(state, size, 0);
+  const PluginState parts(state, nodes(), static_cast<int>(ways_.size()));
+  for (double* flags : {parts.released, parts.were_released}) {
+    std::copy(springs_->released.begin(), springs_->released.end(), flags);
   }
 }
 
@@ -104,9 +136,7 @@ void Springs::ReadNodes(const EulerStep& step, const mjData* data, const double*
 }
 
 void Springs::ReadControllers(const mjModel* model, const mjData* data, double time,
-                              const double* plugin_state) {
-  const double* before = plugin_state + 3 * nodes();
-  const bool known = before[3 * ways_.size()] != 0;
+                              const double* before) {
   for (std::size_t c = 0; c < ways_.size(); ++c) {
     const int body = springs_->level.bodies.controllers[c];
     const Eigen::Map<const Vector> now(data->xpos + 3 * body);
@@ -114,7 +144,7 @@ void Springs::ReadControllers(const mjModel* model, const mjData* data, double t
     way.impulse.setZero();
     way.is_mocap = model->body_mocapid[model->body_rootid[body]] >= 0;
     if (way.is_mocap) {
-      way.from = known ? Vector(Eigen::Map<const Vector>(before + 3 * c)) : Vector(now);
+      way.from = before != nullptr ? Vector(Eigen::Map<const Vector>(before + 3 * c)) : Vector(now);
       way.velocity = (now - way.from) / time;
     } else {
       double velocity[6];
@@ -129,6 +159,35 @@ void Springs::ReadControllers(const mjModel* model, const mjData* data, double t
 void Springs::ReadInternal(const double* internal) {
   std::copy(internal, internal + springs_->internal_size(),
             Internal(&state_, springs_->step.first_internal()));
+}
+
+void Springs::TakeHold(const ControllerMask& attached) {
+  Attachment taken{attached, Points(3, static_cast<Eigen::Index>(ways_.size())),
+                   Points(3, nodes())};
+  for (std::size_t c = 0; c < ways_.size(); ++c) {
+    taken.controllers.col(static_cast<Eigen::Index>(c)) = ways_[c].from;
+  }
+  for (int i = 0; i < nodes(); ++i) taken.nodes.col(i) = Eigen::Map<const Vector>(state_[i].x);
+  springs_->grasps.Attach(taken, &state_);
+}
+
+void Springs::ReadGrasps(const PluginState& plugin_state) {
+  const SpringMassSystem& system = springs_->step.effects().changed().system;
+  const GraspSprings<double>& grasps = springs_->grasps;
+  ControllerMask released, attached;
+  for (std::size_t c = 0; c < ways_.size(); ++c) {
+    released.push_back(plugin_state.released[c] != 0);
+    attached.push_back(!released[c] && plugin_state.were_released[c] != 0);
+  }
+  if (std::find(attached.begin(), attached.end(), true) != attached.end()) TakeHold(attached);
+  grasps.CopyLengths(state_, &next_);
+  Eigen::VectorXd rest_length = system.rest_length;
+  grasps.ReadLengths(state_, &rest_length);
+  if (released == released_ && rest_length == rest_length_) return;
+  released_ = std::move(released);
+  rest_length_ = std::move(rest_length);
+  own_step_ = springs_->step;
+  grasps.Apply(released_, state_, &*own_step_);
 }
 
 bool Springs::IsFinite() const {
@@ -154,9 +213,9 @@ void Springs::PlaceControllers(double elapsed, double h) {
 void Springs::Substep(double time, double elapsed, double h, const Contact<double>::Pairs& pairs) {
   static const std::vector<Geom> kNoGeoms;  // MuJoCo finds their contacts
   PlaceControllers(elapsed, h);
-  springs_->step.Advance(
-      {node_step_.View(), time, elapsed, h, controller_velocity_, pairs, kNoGeoms}, state_, &next_,
-      &impacts_, &buffers_, [&](NodeStates<double>* next) { surfaces_.Apply(state_, h, next); });
+  step().Advance({node_step_.View(), time, elapsed, h, controller_velocity_, pairs, kNoGeoms},
+                 state_, &next_, &impacts_, &buffers_,
+                 [&](NodeStates<double>* next) { surfaces_.Apply(state_, h, next); });
   for (std::size_t c = 0; c < ways_.size(); ++c) {
     ways_[c].impulse += h * Eigen::Map<const Vector>(buffers_.force[nodes() + c].f);
   }
@@ -164,22 +223,23 @@ void Springs::Substep(double time, double elapsed, double h, const Contact<doubl
 }
 
 void Springs::Compute(const mjModel* model, mjData* data, int instance) {
-  const EulerStep step(model);
-  const double time = step.time();
+  const EulerStep euler(model);
+  const double time = euler.time();
   const double wanted = std::ceil(time / springs_->substep - 1e-9);
   const int substeps = static_cast<int>(std::clamp(wanted, 1.0, kMostSubsteps));
   const double h = time / substeps;
-  node_step_.Set(springs_->level.system, h, step.gravity());
+  node_step_.Set(springs_->level.system, h, euler.gravity());
 
-  const double* plugin_state = data->plugin_state + model->plugin_stateadr[instance];
-  ReadNodes(step, data, plugin_state);
-  ReadControllers(model, data, time, plugin_state);
-  ReadInternal(plugin_state + 3 * (nodes() + ways_.size()) + 1);
+  const PluginState plugin_state = StateOf(model, data, instance);
+  ReadNodes(euler, data, plugin_state.lag);
+  ReadControllers(model, data, time, *plugin_state.known != 0 ? plugin_state.controllers : nullptr);
+  ReadInternal(plugin_state.internal);
+  ReadGrasps(plugin_state);
   if (!IsFinite()) return;  // MuJoCo warns
   surfaces_.Collect(model, data, state_);
   const Contact<double>::Pairs pairs = springs_->step.contact().FindPairs(state_, time);
   for (int i = 0; i < substeps; ++i) Substep(data->time, i * h, h, pairs);
-  WriteForces(model, step, substeps, data);
+  WriteForces(model, euler, substeps, data);
 }
 
 void Springs::WriteForces(const mjModel* model, const EulerStep& step, int substeps, mjData* data) {
@@ -204,19 +264,20 @@ void Springs::WriteForces(const mjModel* model, const EulerStep& step, int subst
 }
 
 void Springs::Advance(const mjModel* model, mjData* data, int instance) {
-  double* lag = data->plugin_state + model->plugin_stateadr[instance];
+  const PluginState plugin_state = StateOf(model, data, instance);
   if (is_computed_) {
-    std::copy(lag_.begin(), lag_.end(), lag);
+    std::copy(lag_.begin(), lag_.end(), plugin_state.lag);
   } else {  // passive forces are switched off
-    std::fill(lag, lag + lag_.size(), 0);
+    std::fill_n(plugin_state.lag, lag_.size(), 0);
   }
-  double* before = lag + lag_.size();
+  double* place = plugin_state.controllers;
   for (int body : springs_->level.bodies.controllers) {
-    before = std::copy(data->xpos + 3 * body, data->xpos + 3 * body + 3, before);
+    place = std::copy_n(data->xpos + 3 * body, 3, place);
   }
-  *before = 1;
+  std::copy_n(plugin_state.released, ways_.size(), plugin_state.were_released);
+  *plugin_state.known = 1;
   const double* internal = Internal(state_, springs_->step.first_internal());
-  if (is_computed_) std::copy(internal, internal + springs_->internal_size(), before + 1);
+  if (is_computed_) std::copy_n(internal, springs_->internal_size(), plugin_state.internal);
   is_computed_ = false;
 }
 

@@ -11,18 +11,25 @@
 // With n = 1 the lag is 0. Velocities that other forces and constraints add to qvel are carried
 // over. Mocap controllers move linearly from where they were in the step before, and have that
 // velocity; moving ones move on with theirs and feel the springs' mean force.
+//
+// Controllers may let go and take hold: plugin_state begins with a number for each of them that the
+// user sets, 0 = it holds. After a reset it is what the attribute `released` says. One that takes
+// hold again relaxes its springs (twin/grasp_springs.h).
 #ifndef PHYSPRING_PLUGIN_SPRINGS_H_
 #define PHYSPRING_PLUGIN_SPRINGS_H_
 
 #include <mujoco/mujoco.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "plugin/euler_step.h"
 #include "plugin/level.h"
 #include "plugin/surfaces.h"
+#include "twin/grasp_springs.h"
 #include "twin/level_step.h"
+#include "twin/plugin_state.h"
 
 namespace physpring {
 
@@ -30,14 +37,17 @@ namespace physpring {
 struct SpringsModel {
   Level level;
   bool controller_velocity;
-  double substep;          // s, the longest
-  LevelStep<double> step;  // contacts are those of the level's nodes with each other
+  ControllerMask released;  // at first
+  double substep;           // s, the longest
+  LevelStep<double> step;   // contacts are those of the level's nodes with each other
+  GraspSprings<double> grasps;
 
   // Throws Error, one line that names instance, attribute and value.
   SpringsModel(const mjModel* model, int instance);
 
-  // How many numbers are the effects' internal variables.
-  int internal_size() const { return kRecordSize * (step.state_size() - step.first_internal()); }
+  int state_size() const { return step.state_size() + grasps.records(); }
+  // How many numbers are the effects' internal variables and the lengths of grasps.
+  int internal_size() const { return kRecordSize * (state_size() - step.first_internal()); }
 };
 
 class Springs {
@@ -48,10 +58,10 @@ class Springs {
   Springs(const mjModel* model, int instance);
   Springs(const Springs& other) = default;
 
-  // The size of plugin_state: the nodes' lag, where the controllers were, whether that is known,
-  // and the effects' internal variables.
+  // The size of plugin_state, and what it is at first.
   static int StateSize(const mjModel* model, int instance);
 
+  void Reset(int size, double* state) const;
   void Compute(const mjModel* model, mjData* data, int instance);
   void Advance(const mjModel* model, mjData* data, int instance);
 
@@ -62,11 +72,19 @@ class Springs {
     bool is_mocap;
   };
 
+  PluginState StateOf(const mjModel* model, mjData* data, int instance) const {
+    return PluginState(data->plugin_state + model->plugin_stateadr[instance], nodes(),
+                       static_cast<int>(ways_.size()));
+  }
+
   int nodes() const { return springs_->level.system.node_count(); }
   void ReadNodes(const EulerStep& step, const mjData* data, const double* lag);
-  void ReadControllers(const mjModel* model, const mjData* data, double time,
-                       const double* plugin_state);
+  void ReadControllers(const mjModel* model, const mjData* data, double time, const double* before);
   void ReadInternal(const double* internal);
+  void TakeHold(const ControllerMask& attached);
+  void ReadGrasps(const PluginState& plugin_state);
+  // That of the step of MuJoCo which is computed.
+  const LevelStep<double>& step() const { return own_step_ ? *own_step_ : springs_->step; }
   bool IsFinite() const;
   void PlaceControllers(double elapsed, double h);
   void Substep(double time, double elapsed, double h, const Contact<double>::Pairs& pairs);
@@ -74,6 +92,11 @@ class Springs {
 
   std::shared_ptr<const SpringsModel> springs_;
   Surfaces surfaces_;
+
+  // Of the grasps as they are, where they were ever changed.
+  std::optional<LevelStep<double>> own_step_;
+  ControllerMask released_;
+  Eigen::VectorXd rest_length_;  // (springs), m
 
   // Buffers of a step. `lag_` is for the Advance of the same step.
   NodeStep<double> node_step_;

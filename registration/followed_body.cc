@@ -10,6 +10,7 @@
 #include "tracker/tracker_bank.h"
 #include "trainer/bodies/start_system.h"
 #include "twin/error.h"
+#include "twin/local_motion.h"
 #include "twin/neighbours.h"
 #include "twin/recorded_input.h"
 #include "twin/rotation.h"
@@ -25,13 +26,9 @@ constexpr int kSubsteps = 40;
 // points.
 Points MoveWithNeighbours(const Points& from, const Points& to) {
   constexpr int kNearest = 12;
-  const NeighbourSearch search(from);
+  const LocalMotion motion(from, to, kNearest);
   Points moved(3, from.cols());
-  for (Eigen::Index i = 0; i < from.cols(); ++i) {
-    std::vector<int> near;
-    for (const Neighbour& one : search.Nearest(from.col(i), kNearest)) near.push_back(one.index);
-    moved.col(i) = MoveRigidly(from(Eigen::all, near), to(Eigen::all, near), from.col(i));
-  }
+  for (Eigen::Index i = 0; i < from.cols(); ++i) moved.col(i) = *motion.Move(from.col(i));
   return moved;
 }
 
@@ -58,7 +55,7 @@ std::vector<Points> FollowClouds(const Recording& recording) {
   SpringMassSystem system = MakeStartSystem(recording, {});
   ScaleToSubsteps(1 / recording.fps, kSubsteps, kStepSafety, &system);
   TrackerBank tracker(system, EnvironmentOf(recording),
-                      {1 / recording.fps, kSubsteps, true, ReleasesOf(recording)},
+                      {1 / recording.fps, kSubsteps, true, LateGraspsOf(recording)},
                       MatchWidth(recording.points[0]), recording.points[0], recording.velocity);
   FrameMeasurement measured;
   std::vector<Points> position{recording.points[0]};

@@ -12,8 +12,8 @@
 #include "tracker/soft_match.h"
 #include "tracker/track_recording.h"
 #include "twin/error.h"
+#include "twin/local_motion.h"
 #include "twin/neighbours.h"
-#include "twin/rotation.h"
 
 namespace physpring {
 namespace {
@@ -59,15 +59,13 @@ Recording AtRestInFrame0(const Recording& clouds, const Points& start) {
 // nearest to them now.
 void CarryBack(const Points& cloud, const Points& now, const Points& start,
                std::vector<Eigen::Vector3d>* carried) {
-  constexpr int kNearest = 8;
   const double reach = kFarFromRough * MedianSpacing(start);
-  const NeighbourSearch search(now), search_at_start(start);
+  const LocalMotion motion(now, start);
+  const NeighbourSearch search_at_start(start);
   const Points points = PointsOf(cloud);
   for (const auto& point : points.colwise()) {
-    std::vector<int> near;
-    for (const Neighbour& one : search.Nearest(point, kNearest)) near.push_back(one.index);
-    const Points back = MoveRigidly(now(Eigen::all, near), start(Eigen::all, near), point);
-    if (search_at_start.Nearest(back.col(0), 1)[0].distance < reach) carried->emplace_back(back);
+    const Eigen::Vector3d back = *motion.Move(point);
+    if (search_at_start.Nearest(back, 1)[0].distance < reach) carried->push_back(back);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "twin/hierarchy.h"
 #include "twin/lift.h"
 #include "twin/predict.h"
+#include "twin/recorded_input.h"
 
 namespace physpring {
 namespace {
@@ -103,12 +104,18 @@ class Film {
 };
 
 // One frame: the controllers go evenly from where they were in the frame before, and are in each
-// step where they are at its end, as in the trainer.
+// step where they are at its end, as in the trainer. on_level makes nodes of particles.
 void RunFrame(const mjModel& model, const ExportedObject& object, const Recording& recording,
-              int frame, int steps, mjData* data) {
+              const std::function<Points(const Points&)>& on_level, int frame, int steps,
+              mjData* data) {
   const Points& from = recording.controllers[frame - 1];
   const Points& to = recording.controllers[frame];
   const Points velocity = (to - from) * recording.fps;
+  if (recording.held.size() > 0) {
+    FrameInput input = RecordedInput(recording, frame, 0);
+    if (input.attached.any()) input.attached.nodes = on_level(input.attached.nodes);
+    object.SetGrasps(input.released, input.attached, data);
+  }
   for (int step = 1; step <= steps; ++step) {
     object.SetControllers(from + (to - from) * (static_cast<double>(step) / steps), velocity, data);
     Step(model, data);
@@ -142,6 +149,7 @@ ControllerReplay ReplayControllers(const std::string& scene, const Recording& re
   object.SetNodes(on_level(start), on_level(recording.velocity), data.get());
   const Points& controllers = recording.controllers[0];
   object.SetControllers(controllers, Points::Zero(3, controllers.cols()), data.get());
+  object.StartControllers(controllers, data.get());
   mj_kinematics(model.get(), data.get());
 
   if (const std::string other = OtherGround(*model, *data, recording); !other.empty()) {
@@ -153,7 +161,7 @@ ControllerReplay ReplayControllers(const std::string& scene, const Recording& re
     if (options.progress) options.progress(frame);
     auto begin = Clock::now();
     try {
-      if (frame > 0) RunFrame(*model, object, recording, frame, replay.steps, data.get());
+      if (frame > 0) RunFrame(*model, object, recording, on_level, frame, replay.steps, data.get());
     } catch (const Error& error) {
       throw Error(fmt::format("{}: in frame {} {}", scene, frame, error.what()));
     }

@@ -3,6 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+
+#include "twin/attribute_names.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -36,6 +41,14 @@ std::vector<int> Bodies(const mjModel& model, const std::string& stem) {
   }
 }
 
+// That of physpring.springs which a controller belongs to, or -1.
+int SpringsInstance(const mjModel& model, int controller) {
+  const int instance = model.body_plugin[controller];
+  if (instance < 0) return -1;
+  const mjpPlugin* plugin = mjp_getPluginAtSlot(model.plugin[instance]);
+  return plugin != nullptr && std::string_view(plugin->name) == "physpring.springs" ? instance : -1;
+}
+
 }  // namespace
 
 ExportedObject::ExportedObject(const mjModel& model, const std::string& where) : model_(model) {
@@ -51,6 +64,8 @@ ExportedObject::ExportedObject(const mjModel& model, const std::string& where) :
                             model.names + model.name_bodyadr[node]));
   }
   controllers_ = Bodies(model, names[0] + "_controller");
+  if (!controllers_.empty()) instance_ = SpringsInstance(model, controllers_[0]);
+  grasp_springs_ = GraspSprings();
   for (std::size_t c = 0; c < controllers_.size(); ++c) {
     if (model.body_mocapid[controllers_[c]] >= 0) continue;
     const std::string actuator = fmt::format("{}_controller_{}_x", names[0], c);
@@ -95,6 +110,49 @@ void ExportedObject::SetControllers(const Points& position, const Points& veloci
     // the actuators hold it there
     Vector(data->ctrl + *actuator++) =
         Vector(data->qpos + model_.jnt_qposadr[model_.body_jntadr[body]]);
+  }
+}
+
+std::optional<PluginState> ExportedObject::StateOf(mjData* data) const {
+  if (instance_ < 0) return {};
+  return PluginState(data->plugin_state + model_.plugin_stateadr[instance_], node_count(),
+                     controller_count());
+}
+
+void ExportedObject::StartControllers(const Points& position, mjData* data) const {
+  const auto state = StateOf(data);
+  if (!state) return;
+  Eigen::Map<Points>(state->controllers, 3, controller_count()) = position;
+  *state->known = 1;
+}
+
+std::vector<ExportedObject::GraspSpring> ExportedObject::GraspSprings() const {
+  std::vector<GraspSpring> springs;
+  if (instance_ < 0) return springs;
+  std::istringstream ends(mj_getPluginConfig(&model_, instance_, kAttrSprings));
+  for (int a = 0, b = 0; ends >> a >> b;) {
+    const auto [node, other] = std::minmax(a, b);
+    if (other >= node_count()) springs.push_back({node, other - node_count()});
+  }
+  return springs;
+}
+
+void ExportedObject::SetGrasps(const ControllerMask& released, const Attachment& taken,
+                               mjData* data) const {
+  const auto state = StateOf(data);
+  if (!state) throw Error("has springs of MuJoCo's own, which never let go (--springs plugin)");
+  for (int c = 0; c < controller_count(); ++c) {
+    state->released[c] = Has(released, c) ? 1 : 0;
+    if (Has(taken.attached, c)) state->were_released[c] = 0;  // what it holds is said here
+  }
+  const std::size_t records = (grasp_springs_.size() + kRecordSize - 1) / kRecordSize;
+  double* length = data->plugin_state + model_.plugin_stateadr[instance_] +
+                   model_.plugin_statenum[instance_] - kRecordSize * records;
+  for (const auto& [node, controller] : grasp_springs_) {
+    if (Has(taken.attached, controller)) {
+      *length = (taken.controllers.col(controller) - taken.nodes.col(node)).norm();
+    }
+    ++length;
   }
 }
 

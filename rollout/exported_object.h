@@ -6,9 +6,12 @@
 
 #include <mujoco/mujoco.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "twin/grasp_springs.h"
+#include "twin/plugin_state.h"
 #include "twin/points.h"
 
 namespace physpring {
@@ -28,15 +31,31 @@ class ExportedObject {
 
   // Mocap bodies have no velocity.
   void SetControllers(const Points& position, const Points& velocity, mjData* data) const;
+  // The next step begins with the mocap controllers there; else they stand still in the first one.
+  void StartControllers(const Points& position, mjData* data) const;
+  // Some controllers let go, the others hold; those of `taken` take hold. Throws Error if the
+  // springs are not the plugin's: those of MuJoCo hold for good.
+  void SetGrasps(const ControllerMask& released, const Attachment& taken, mjData* data) const;
 
  private:
   // By slide joints, qpos and qvel.
   void PlaceBody(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity, int body,
                  mjData* data) const;
 
+  // A spring that joins a controller to a node.
+  struct GraspSpring {
+    int node, controller;
+  };
+
+  // None if the springs are not the plugin's.
+  std::optional<PluginState> StateOf(mjData* data) const;
+  std::vector<GraspSpring> GraspSprings() const;
+
   const mjModel& model_;
-  std::vector<int> nodes_, controllers_;  // bodies
-  std::vector<int> actuators_;            // the first of three for each driven controller
+  int instance_ = -1;                       // of the plugin; -1: none
+  std::vector<GraspSpring> grasp_springs_;  // of the plugin's
+  std::vector<int> nodes_, controllers_;    // bodies
+  std::vector<int> actuators_;              // the first of three for each driven controller
 };
 
 }  // namespace physpring

@@ -162,7 +162,7 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   const std::vector<FrameMeasurement> told = ToldOf(recording, motion.hidden, options.cloud);
   TrackerBank tracker(level.system, EnvironmentOf(recording),
                       {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0),
-                       twin.controller_velocity, ReleasesOf(recording)},
+                       twin.controller_velocity, LateGraspsOf(recording)},
                       NoiseOf(told), recording.start.leftCols(recording.particle_count()),
                       recording.velocity);
   const double delay = ControllerDelay(level.system);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "twin/grasps.h"
 #include "twin/resampling.h"
 
 namespace physpring {
@@ -18,6 +19,7 @@ void ShiftHeld(double seconds, Recording* recording) {
   for (int t = 0; t < recording->frame_count(); ++t) {
     recording->held.row(t) = held.row(std::clamp(t - frames, 0, recording->frame_count() - 1));
   }
+  FindShapesWhenHeld(recording);
 }
 
 }  // namespace

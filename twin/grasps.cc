@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
+#include "twin/local_motion.h"
 #include "twin/neighbours.h"
-#include "twin/rotation.h"
 
 namespace physpring {
 namespace {
@@ -66,25 +67,6 @@ void FillReleased(const NpzFields& fields, Recording* recording) {
   }
 }
 
-// Where `place` is in `to`, if it moves along with the columns of `from` nearest to it; columns
-// that are NaN in either are left out.
-Eigen::Vector3d Carry(const Eigen::Vector3d& place, const Points& from, const Points& to,
-                      bool* carried) {
-  constexpr int kNearest = 8;
-  std::vector<Eigen::Index> known;
-  for (Eigen::Index i = 0; i < from.cols(); ++i) {
-    if (from.col(i).allFinite() && to.col(i).allFinite()) known.push_back(i);
-  }
-  *carried = !known.empty();
-  if (known.empty()) return place;
-  std::vector<Eigen::Index> near;
-  const Points shape = from(Eigen::all, known);
-  for (const Neighbour& one : NeighbourSearch(shape).Nearest(place, kNearest)) {
-    near.push_back(known[static_cast<std::size_t>(one.index)]);
-  }
-  return MoveRigidly(from(Eigen::all, near), to(Eigen::all, near), place);
-}
-
 // Between those of the two particles that are nearest to it in frame 0, m.
 double ArcLengthAt(const Recording& recording, const Eigen::Vector3d& place) {
   const NeighbourSearch search(Points(recording.start.leftCols(recording.particle_count())));
@@ -102,18 +84,17 @@ void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording
                     Recording* recording) {
   const int particles = read.particle_count();
   const Points start = read.start.leftCols(read.point_count());
-  bool carried = false;
-  const Eigen::Vector3d place =
-      Carry(read.controllers[static_cast<std::size_t>(grasp.first)].col(grasp.controller),
-            read.points[static_cast<std::size_t>(grasp.first)], start, &carried);
-  if (!carried) {
+  const auto first = static_cast<std::size_t>(grasp.first);
+  const std::optional<Eigen::Vector3d> place =
+      LocalMotion(read.points[first], start).Move(read.controllers[first].col(grasp.controller));
+  if (!place) {
     fields.Fail("points", fmt::format("sees nothing in frame {}, in which controller {} takes hold",
                                       grasp.first, grasp.controller));
   }
-  recording->start.col(particles + column) = place;
+  recording->start.col(particles + column) = *place;
   recording->rest.col(particles + column) =
-      Carry(place, start, read.rest.leftCols(read.point_count()), &carried);
-  if (read.order.size() > 0) recording->order[particles + column] = ArcLengthAt(read, place);
+      *LocalMotion(start, read.rest.leftCols(read.point_count())).Move(*place);
+  if (read.order.size() > 0) recording->order[particles + column] = ArcLengthAt(read, *place);
 }
 
 // The path of a controller while it holds; before and after it stands still.
@@ -158,6 +139,23 @@ void SplitGrasps(const NpzFields& fields, Recording* recording) {
     const Grasp& grasp = grasps[static_cast<std::size_t>(i)];
     SetPath(grasp, read, i, recording);
     if (grasp.first > 0) PlaceLateGrasp(fields, grasp, read, i, recording);
+  }
+  FindShapesWhenHeld(recording);
+}
+
+void FindShapesWhenHeld(Recording* recording) {
+  recording->shape_when_held.clear();
+  const Points start = recording->start.leftCols(recording->particle_count());
+  for (int t = 1; t < recording->held.rows(); ++t) {
+    if (!(recording->held.row(t) && !recording->held.row(t - 1)).any()) continue;
+    Points shape = Points::Constant(3, start.cols(), std::nan(""));
+    shape.leftCols(recording->point_count()) = recording->points[static_cast<std::size_t>(t)];
+    const LocalMotion motion(start, shape);
+    for (Eigen::Index i = 0; i < shape.cols(); ++i) {
+      if (!shape.col(i).allFinite())
+        shape.col(i) = motion.Move(start.col(i)).value_or(start.col(i));
+    }
+    recording->shape_when_held[t] = shape;
   }
 }
 

@@ -2,6 +2,7 @@
 #include "twin/lane_simulator.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "twin/stop_request.h"
@@ -29,16 +30,14 @@ std::vector<Simulator<Real>> LaneSimulator<Real>::SimulatorsOf(
 }
 
 template <class Real>
-LaneStep<Real> LaneSimulator<Real>::StepOf(const std::vector<Simulator<Real>>& simulators,
-                                           const FrameInput& input,
-                                           const LaneKernel<Real>& kernel) {
+LaneStep<Real> LaneSimulator<Real>::StepOfFrame() const {
   std::vector<const LevelStep<Real>*> levels;
   std::vector<NodeView<Real>> nodes;
-  for (const Simulator<Real>& simulator : simulators) {
-    levels.push_back(&simulator.StepOf(input));
-    nodes.push_back(simulator.node_step_.View());
+  for (std::size_t i = 0; i < simulators_.size(); ++i) {
+    levels.push_back(&simulators_[i].StepOf(workspaces_[i]));
+    nodes.push_back(simulators_[i].node_step_.View());
   }
-  return LaneStep<Real>(levels, nodes, kernel);
+  return LaneStep<Real>(levels, nodes, kernel_);
 }
 
 template <class Real>
@@ -46,17 +45,12 @@ LaneSimulator<Real>::LaneSimulator(const std::vector<SpringMassSystem>& systems,
                                    const Environment& environment, const SimulationOptions& options,
                                    const LaneKernel<Real>& kernel)
     : simulators_(SimulatorsOf(systems, environment, options)),
-      step_(StepOf(simulators_, {}, kernel)),
+      kernel_(kernel),
+      workspaces_(simulators_.begin(), simulators_.end()),
+      step_(StepOfFrame()),
       state_(kLaneState * simulators_[0].step_.first_internal(), kernel.lanes),
       next_(state_),
-      own_(kernel.lanes, nullptr) {
-  for (const Simulator<Real>& simulator : simulators_) workspaces_.emplace_back(simulator);
-  for (const Released& released : options.releases) {
-    FrameInput input;
-    input.released = released;
-    released_.push_back(StepOf(simulators_, input, kernel));
-  }
-}
+      own_(kernel.lanes, nullptr) {}
 
 template <class Real>
 void LaneSimulator<Real>::AdvanceFrame(const std::vector<FrameInput>& inputs,
@@ -67,11 +61,14 @@ void LaneSimulator<Real>::AdvanceFrame(const std::vector<FrameInput>& inputs,
   std::copy(states.begin(), states.end(), own_.begin());
   const int lanes = static_cast<int>(states.size());
   for (int l = 0; l < lanes; ++l) {
-    if (own_[l]) simulators_[l].StartFrame(inputs[l], *own_[l], &workspaces_[l]);
+    if (own_[l]) simulators_[l].StartFrame(inputs[l], own_[l], &workspaces_[l]);
   }
-  const std::vector<Released>& releases = simulators_[0].options_.releases;
-  const auto release = std::find(releases.begin(), releases.end(), inputs[0].released);
-  LaneStep<Real>& step = release == releases.end() ? step_ : released_[release - releases.begin()];
+  std::optional<LaneStep<Real>> own_step;
+  const auto has_own = [](const Workspace& workspace) { return workspace.own_step.has_value(); };
+  if (std::any_of(workspaces_.begin(), workspaces_.end(), has_own)) {
+    own_step.emplace(StepOfFrame());
+  }
+  LaneStep<Real>& step = own_step ? *own_step : step_;
   step.Interleave(own_, 0, nodes, state_.data());
   for (int i = 0; i < substeps; ++i) {
     moving_.clear();
@@ -88,7 +85,7 @@ void LaneSimulator<Real>::AdvanceFrame(const std::vector<FrameInput>& inputs,
   }
   step.Separate(state_.data(), 0, nodes, own_);
   for (int l = 0; l < lanes; ++l) {
-    if (own_[l]) simulators_[l].PlaceControllers(inputs[l], substeps - 1, own_[l]);
+    if (own_[l]) simulators_[l].EndFrame(inputs[l], workspaces_[l], own_[l]);
   }
 }
 

@@ -39,15 +39,14 @@ class LaneSimulator {
   static std::vector<Simulator<Real>> SimulatorsOf(const std::vector<SpringMassSystem>& systems,
                                                    const Environment& environment,
                                                    const SimulationOptions& options);
-  // The step of all simulators in a frame of that input.
-  static LaneStep<Real> StepOf(const std::vector<Simulator<Real>>& simulators,
-                               const FrameInput& input, const LaneKernel<Real>& kernel);
+  // The step of all simulators in the frame for which their workspaces were started.
+  LaneStep<Real> StepOfFrame() const;
 
   std::vector<Simulator<Real>> simulators_;
-  LaneStep<Real> step_;
-  std::vector<LaneStep<Real>> released_;  // of each of SimulationOptions::releases
-  LaneArray<Real> state_, next_;
+  const LaneKernel<Real>& kernel_;
   std::vector<Workspace> workspaces_;
+  LaneStep<Real> step_;  // where all controllers hold what they held at the start
+  LaneArray<Real> state_, next_;
   std::vector<State*> own_;  // (lanes of the kernel) the states of those that move
   std::vector<LaneNow<Real>> moving_;
 };

@@ -77,6 +77,11 @@ class LevelStep {
   // The parameters, masses, drag and effects of a system of the same topology and effects.
   void SetParameters(const SpringMassSystem& system);
 
+  // Changes one of springs(): its rest length, m, or that it pulls at nothing. SetParameters undoes
+  // it.
+  void SetRestLength(int slot, Real length) { springs_.rest_length[slot] = length; }
+  void OpenSpring(int slot) { springs_.stiffness[slot] = springs_.dashpot[slot] = 0; }
+
   const SpringBlocks<Real>& springs() const { return springs_; }
   const Contact<Real>& contact() const { return contact_; }
   const EffectStep<Real>& effects() const { return *effects_; }

@@ -28,7 +28,7 @@ template <class Real>
 std::vector<Points> Simulate(const Twin& twin, int level, const Recording& recording,
                              int substeps) {
   const SimulationOptions options{1 / recording.fps, substeps, twin.controller_velocity,
-                                  ReleasesOf(recording)};
+                                  LateGraspsOf(recording)};
   const Simulator<Real> simulator(twin.levels[level].system, EnvironmentOf(recording), options);
   typename Simulator<Real>::Workspace workspace(simulator);
   const double delay = ControllerDelay(twin.levels[level].system);
@@ -37,7 +37,10 @@ std::vector<Points> Simulate(const Twin& twin, int level, const Recording& recor
                                    AverageOverMembers(twin, level, recording.velocity));
   std::vector<Points> positions{simulator.Positions(state)};
   for (int frame = 1; frame < recording.frame_count(); ++frame) {
-    simulator.AdvanceFrame(RecordedInput(recording, frame, delay), &state, &workspace);
+    FrameInput input = RecordedInput(recording, frame, delay);
+    Attachment& attached = input.attached;
+    if (attached.any()) attached.nodes = AverageOverMembers(twin, level, attached.nodes);
+    simulator.AdvanceFrame(input, &state, &workspace);
     positions.push_back(simulator.Positions(state));
     if (positions.back().allFinite() && simulator.Velocities(state).allFinite()) continue;
     throw Error(fmt::format(

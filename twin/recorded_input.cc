@@ -26,33 +26,44 @@ Points PlaceBefore(const Recording& recording, int frame, double delay, Points* 
   return back == 0 ? to : Points(to + back * (from - to));
 }
 
-Released ReleasedIn(const Recording& recording, int frame) {
-  Released released;
-  if (recording.held.size() == 0) return released;
-  bool any = false;
-  for (int c = 0; c < recording.held.cols(); ++c) {
-    released.push_back(!(recording.held(frame - 1, c) && recording.held(frame, c)));
-    any = any || released.back();
-  }
-  return any ? released : Released{};
+// Whether a controller holds on the way from frame - 1 to `frame`.
+bool Holds(const Recording& recording, int frame, Eigen::Index controller) {
+  return recording.held(frame - 1, controller) && recording.held(frame, controller);
+}
+
+// The controllers of which that is so; empty if it is so of none.
+template <class Function>
+ControllerMask Which(const Recording& recording, Function is_so) {
+  ControllerMask mask;
+  for (Eigen::Index c = 0; c < recording.held.cols(); ++c) mask.push_back(is_so(c));
+  return std::find(mask.begin(), mask.end(), true) == mask.end() ? ControllerMask{} : mask;
+}
+
+ControllerMask ReleasedIn(const Recording& recording, int frame) {
+  return Which(recording, [&](Eigen::Index c) { return !Holds(recording, frame, c); });
+}
+
+Attachment AttachedIn(const Recording& recording, int frame) {
+  const auto shape = recording.shape_when_held.find(frame - 1);
+  if (frame == 1 || shape == recording.shape_when_held.end()) return {};
+  return {Which(recording,
+                [&](Eigen::Index c) {
+                  return Holds(recording, frame, c) && !Holds(recording, frame - 1, c);
+                }),
+          recording.controllers[static_cast<std::size_t>(frame) - 1], shape->second};
 }
 
 }  // namespace
 
-std::vector<Released> ReleasesOf(const Recording& recording) {
-  std::vector<Released> releases;
-  for (int frame = 1; frame < recording.frame_count(); ++frame) {
-    const Released released = ReleasedIn(recording, frame);
-    const bool is_new = std::find(releases.begin(), releases.end(), released) == releases.end();
-    if (!released.empty() && is_new) releases.push_back(released);
-  }
-  return releases;
+ControllerMask LateGraspsOf(const Recording& recording) {
+  return Which(recording, [&](Eigen::Index c) { return !Holds(recording, 1, c); });
 }
 
 FrameInput RecordedInput(const Recording& recording, int frame, double delay) {
   FrameInput input;
   input.time = (frame - 1) / recording.fps;
   input.released = ReleasedIn(recording, frame);
+  input.attached = AttachedIn(recording, frame);
   if (recording.controllers.empty()) {
     input.controllers_start = input.controllers_end = Points(3, 0);
     return input;

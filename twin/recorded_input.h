@@ -12,11 +12,11 @@ namespace physpring {
 
 // The input on the way from frame - 1 to `frame` (>= 1). Controllers are linear between frames and
 // stand still before frame 0 and after the last one. A controller that does not hold in both frames
-// is released.
+// is released; one that does, but not in the frame before, takes hold of the measured shape.
 FrameInput RecordedInput(const Recording& recording, int frame, double delay);
 
-// What is released in the frames of the recording, each once (SimulationOptions::releases).
-std::vector<Released> ReleasesOf(const Recording& recording);
+// The controllers that take hold within the recording (SimulationOptions::late).
+ControllerMask LateGraspsOf(const Recording& recording);
 
 }  // namespace physpring
 

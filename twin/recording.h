@@ -5,6 +5,7 @@
 #ifndef PHYSPRING_TWIN_RECORDING_H_
 #define PHYSPRING_TWIN_RECORDING_H_
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct Recording {
   // T x C: whether a controller holds the object in a frame; empty: always. Each holds once, from a
   // frame to another one (grasps.h).
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> held;
+  // For each frame in which a controller takes hold after the start: where all particles are then,
+  // 3 x (N+M), m.
+  std::map<int, Points> shape_when_held;
 
   Points interior;              // 3 x M, m: unobserved particles in frame 0; M may be 0
   Points rest;                  // 3 x (N+M+C), m: stress-free positions; default: frame 0

@@ -7,21 +7,6 @@
 #include "twin/stop_request.h"
 
 namespace physpring {
-namespace {
-
-bool IsReleased(const SpringMassSystem& system, int spring, const Released& released) {
-  const auto [node, end] = std::minmax(system.springs[spring][0], system.springs[spring][1]);
-  return end >= system.node_count() && released[end - system.node_count()];
-}
-
-SpringMassSystem Release(SpringMassSystem system, const Released& released) {
-  for (int e = 0; e < system.spring_count(); ++e) {
-    if (IsReleased(system, e, released)) system.stiffness[e] = system.dashpot[e] = 0;
-  }
-  return system;
-}
-
-}  // namespace
 
 template <class Real>
 Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& environment,
@@ -30,11 +15,8 @@ Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& en
       controllers_(system.controllers),
       options_(options),
       h_(options.frame_time / options.substeps),
-      step_(system, environment, kernel) {
-  for (const Released& released : options.releases) {
-    released_.push_back(
-        {released, LevelStep<Real>(Release(system, released), environment, kernel)});
-  }
+      step_(system, environment, kernel),
+      grasps_(system, options.late, step_.springs(), step_.state_size()) {
   const Setting& changed = step_.effects().changed();
   node_step_.Set(changed.system, h_, changed.gravity);
 }
@@ -42,7 +24,6 @@ Simulator<Real>::Simulator(const SpringMassSystem& system, const Environment& en
 template <class Real>
 void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
   step_.SetParameters(system);
-  for (ReleasedStep& one : released_) one.step.SetParameters(Release(system, one.released));
   const Setting& changed = step_.effects().changed();
   node_step_.Set(changed.system, h_, changed.gravity);
 }
@@ -50,7 +31,7 @@ void Simulator<Real>::SetParameters(const SpringMassSystem& system) {
 template <class Real>
 typename Simulator<Real>::State Simulator<Real>::MakeState(const Points& position,
                                                            const Points& velocity) const {
-  State state(step_.state_size());
+  State state(state_size());
   for (int i = 0; i < nodes_; ++i) {
     for (int j = 0; j < 3; ++j) {
       state[i].x[j] = static_cast<Real>(position(j, i));
@@ -79,6 +60,13 @@ Points Simulator<Real>::Velocities(const State& state) const {
 }
 
 template <class Real>
+Eigen::VectorXd Simulator<Real>::RestLengths(const State& state) const {
+  Eigen::VectorXd length = step_.effects().changed().system.rest_length;
+  grasps_.ReadLengths(state, &length);
+  return length;
+}
+
+template <class Real>
 void Simulator<Real>::PlaceControllers(const FrameInput& input, int substep, State* state) const {
   const double fraction = static_cast<double>(substep + 1) / options_.substeps;
   for (int c = 0; c < controllers_; ++c) {
@@ -93,19 +81,29 @@ void Simulator<Real>::PlaceControllers(const FrameInput& input, int substep, Sta
 }
 
 template <class Real>
-void Simulator<Real>::StartFrame(const FrameInput& input, const State& state,
+void Simulator<Real>::StartFrame(const FrameInput& input, State* state,
                                  Workspace* workspace) const {
-  workspace->pairs = step_.contact().FindPairs(state, options_.frame_time);
+  workspace->pairs = step_.contact().FindPairs(*state, options_.frame_time);
   workspace->controller_velocity =
       (input.controllers_end - input.controllers_start) / options_.frame_time;
+  workspace->own_step.reset();
+  if (input.released.empty() && !grasps_.has_late()) return;
+  grasps_.Attach(input.attached, state);
+  workspace->start = *state;
+  workspace->own_step = step_;
+  grasps_.Apply(input.released, *state, &*workspace->own_step);
 }
 
 template <class Real>
-const LevelStep<Real>& Simulator<Real>::StepOf(const FrameInput& input) const {
-  const auto found = std::find_if(released_.begin(), released_.end(), [&](const ReleasedStep& one) {
-    return one.released == input.released;
-  });
-  return found == released_.end() ? step_ : found->step;
+void Simulator<Real>::EndFrame(const FrameInput& input, const Workspace& workspace,
+                               State* state) const {
+  PlaceControllers(input, options_.substeps - 1, state);
+  if (workspace.own_step) grasps_.CopyLengths(workspace.start, state);
+}
+
+template <class Real>
+const LevelStep<Real>& Simulator<Real>::StepOf(const Workspace& workspace) const {
+  return workspace.own_step ? *workspace.own_step : step_;
 }
 
 template <class Real>
@@ -120,13 +118,14 @@ void Simulator<Real>::Substep(const FrameInput& input, int substep, State* state
                               typename LevelStep<Real>::Impacts* impacts,
                               Workspace* workspace) const {
   PlaceControllers(input, substep, state);
-  StepOf(input).Advance(NowOf(input, substep, *workspace), *state, next, impacts,
-                        &workspace->buffers, [](State*) {});
+  StepOf(*workspace)
+      .Advance(NowOf(input, substep, *workspace), *state, next, impacts, &workspace->buffers,
+               [](State*) {});
 }
 
 template <class Real>
 void Simulator<Real>::SubstepAdjoint(int substep, State* state_bar, Workspace* workspace) const {
-  const LevelStep<Real>& step = StepOf(workspace->input);
+  const LevelStep<Real>& step = StepOf(*workspace);
   step.AdvanceAdjoint(NowOf(workspace->input, substep, *workspace), workspace->states[substep],
                       &workspace->states[substep + 1], &workspace->impacts[substep], state_bar,
                       &workspace->buffers);
@@ -139,13 +138,13 @@ template <class Real>
 void Simulator<Real>::AdvanceFrame(const FrameInput& input, State* state,
                                    Workspace* workspace) const {
   StopIfRequested();
-  StartFrame(input, *state, workspace);
+  StartFrame(input, state, workspace);
   if (workspace->impacts.empty()) workspace->impacts.resize(1);
   for (int i = 0; i < options_.substeps; ++i) {
     Substep(input, i, state, &workspace->next, &workspace->impacts[0], workspace);
     std::swap(*state, workspace->next);
   }
-  PlaceControllers(input, options_.substeps - 1, state);
+  EndFrame(input, *workspace, state);
 }
 
 template <class Real>
@@ -161,7 +160,7 @@ template <class Real>
 void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
                                   Workspace* workspace) const {
   StopIfRequested();
-  StartFrame(input, *state, workspace);
+  StartFrame(input, state, workspace);
   workspace->states.resize(options_.substeps + 1, State(state->size()));
   workspace->impacts.resize(options_.substeps);
   workspace->states[0] = *state;
@@ -171,7 +170,7 @@ void Simulator<Real>::RecordFrame(const FrameInput& input, State* state,
   }
   workspace->input = input;
   *state = workspace->states[options_.substeps];
-  PlaceControllers(input, options_.substeps - 1, state);
+  EndFrame(input, *workspace, state);
 }
 
 template <class Real>
@@ -179,21 +178,18 @@ void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gra
                                            Workspace* workspace) const {
   StopIfRequested();
   LevelBuffers<Real>& buffers = workspace->buffers;
-  const LevelStep<Real>& step = StepOf(workspace->input);
+  const FrameInput& input = workspace->input;
+  const LevelStep<Real>& step = StepOf(*workspace);
   step.ClearGradient(&buffers);
   for (int i = options_.substeps - 1; i >= 0; --i) SubstepAdjoint(i, state_bar, workspace);
   // the controllers' motion is given: what was added to them does not count
   std::fill(state_bar->begin() + nodes_, state_bar->begin() + step.first_internal(),
             NodeState<Real>{});
-  const SpringMassSystem& system = step.effects().changed().system;
-  SystemGradient frame(system);
+  SystemGradient frame(step.effects().changed().system);
   step.AddGradients(node_step_.View(), h_, buffers, &frame);
-  step.effects().FinishGradient(workspace->input.delay_rate_start, workspace->input.delay_rate_end,
-                                options_.frame_time, buffers.effects, &frame);
-  const Released& released = workspace->input.released;
-  for (int e = 0; e < system.spring_count() && !released.empty(); ++e) {
-    if (IsReleased(system, e, released)) frame.stiffness[e] = frame.dashpot[e] = 0;
-  }
+  if (workspace->own_step) grasps_.ApplyAdjoint(input.released, workspace->start, &frame);
+  step.effects().FinishGradient(input.delay_rate_start, input.delay_rate_end, options_.frame_time,
+                                buffers.effects, &frame);
   *gradient += frame;
 }
 

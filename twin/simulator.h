@@ -7,9 +7,11 @@
 #ifndef PHYSPRING_TWIN_SIMULATOR_H_
 #define PHYSPRING_TWIN_SIMULATOR_H_
 
+#include <optional>
 #include <vector>
 
 #include "twin/environment.h"
+#include "twin/grasp_springs.h"
 #include "twin/kernel_choice.h"
 #include "twin/level_step.h"
 #include "twin/node_state.h"
@@ -21,14 +23,11 @@ namespace physpring {
 template <class Real>
 class LaneSimulator;
 
-// Which controllers hold nothing for a while: their springs are not there. Empty: none.
-using Released = std::vector<bool>;  // (controllers)
-
 struct SimulationOptions {
-  double frame_time = 1.0 / 30;         // s
-  int substeps = 667;                   // a frame
-  bool controller_velocity = true;      // dashpots feel the controllers' velocity (false: PhysTwin)
-  std::vector<Released> releases = {};  // all that frames may ask for
+  double frame_time = 1.0 / 30;     // s
+  int substeps = 667;               // a frame
+  bool controller_velocity = true;  // dashpots feel the controllers' velocity (false: PhysTwin)
+  ControllerMask late = {};         // all that may take hold within a motion
 };
 
 // The input of a frame: where the controllers are at its start and its end (3 x controllers, m),
@@ -36,8 +35,9 @@ struct SimulationOptions {
 struct FrameInput {
   Points controllers_start, controllers_end;
   std::vector<Geom> geoms;
-  double time = 0;    // at its start, since the start of the recording, s
-  Released released;  // in the frame; one of SimulationOptions::releases, or empty
+  double time = 0;          // at its start, since the start of the recording, s
+  ControllerMask released;  // hold nothing in the frame: their springs are not there
+  Attachment attached;      // takes hold at its start
   // How fast controllers_start and controllers_end change with a delay of the controllers (m/s,
   // recorded_input.h); only its derivative needs it.
   Points delay_rate_start = Points(3, 0), delay_rate_end = Points(3, 0);
@@ -58,6 +58,8 @@ class Simulator {
   State MakeState(const Points& position, const Points& velocity) const;
   Points Positions(const State& state) const;   // where the free nodes are, 3 x nodes, m
   Points Velocities(const State& state) const;  // 3 x nodes, m/s
+  // Of the springs as effects and late grasps made them, (springs), m.
+  Eigen::VectorXd RestLengths(const State& state) const;
 
   // Buffers of a frame; one a thread.
   class Workspace;
@@ -81,15 +83,12 @@ class Simulator {
  private:
   friend class LaneSimulator<Real>;
 
-  // A level whose springs of some controllers pull at nothing.
-  struct ReleasedStep {
-    Released released;
-    LevelStep<Real> step;
-  };
-
-  const LevelStep<Real>& StepOf(const FrameInput& input) const;
+  // That of the frame for which the workspace was started.
+  const LevelStep<Real>& StepOf(const Workspace& workspace) const;
+  int state_size() const { return step_.state_size() + grasps_.records(); }
   LevelSubstep<Real> NowOf(const FrameInput& input, int substep, const Workspace& workspace) const;
-  void StartFrame(const FrameInput& input, const State& state, Workspace* workspace) const;
+  void StartFrame(const FrameInput& input, State* state, Workspace* workspace) const;
+  void EndFrame(const FrameInput& input, const Workspace& workspace, State* state) const;
   void PlaceControllers(const FrameInput& input, int substep, State* state) const;
   void Substep(const FrameInput& input, int substep, State* state, State* next,
                typename LevelStep<Real>::Impacts* impacts, Workspace* workspace) const;
@@ -99,7 +98,7 @@ class Simulator {
   SimulationOptions options_;
   double h_;  // s
   LevelStep<Real> step_;
-  std::vector<ReleasedStep> released_;
+  GraspSprings<Real> grasps_;
   NodeStep<Real> node_step_;
 };
 
@@ -107,13 +106,15 @@ template <class Real>
 class Simulator<Real>::Workspace {
  public:
   explicit Workspace(const Simulator& simulator)
-      : next(simulator.step_.state_size()), buffers(simulator.step_.springs()) {}
+      : next(simulator.state_size()), start(next), buffers(simulator.step_.springs()) {}
 
  private:
   friend class Simulator;
   friend class LaneSimulator<Real>;
 
   State next;
+  State start;                              // of the frame, if it has a step of its own
+  std::optional<LevelStep<Real>> own_step;  // where controllers let go and take hold
   std::vector<State> states;  // at the start of each sub-step of a frame, and at its end
   std::vector<typename LevelStep<Real>::Impacts> impacts;  // one for each sub-step
   LevelBuffers<Real> buffers;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/controller_mask.h"
 #include "twin/linear_predictor.h"
 #include "twin/material.h"
 #include "twin/npz.h"
@@ -47,6 +48,8 @@ struct Twin {
   int interior = 0;
   Eigen::VectorXd order;  // arc length of level 0's nodes and controllers, m; empty if not a rod
   bool controller_velocity = true;  // dashpots feel the controllers' velocity (false: PhysTwin)
+  // The controllers that take hold within the recording, so hold nothing at its start.
+  ControllerMask late;
   double fps = 0;
   Eigen::Vector3d gravity{0, 0, -9.81};
   TrainedGround ground;

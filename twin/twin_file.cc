@@ -132,6 +132,10 @@ Npz StoreTwin(const Twin& twin, const std::string& path) {
         plane ? NpzArray::Doubles({4}, plane->data()) : NpzArray::Doubles({0}, nullptr);
   }
   if (twin.order.size() > 0) arrays["order"] = StoreVector(twin.order);
+  if (!twin.late.empty()) {
+    const std::vector<int> late(twin.late.begin(), twin.late.end());
+    arrays["late"] = NpzArray::Ints({late.size()}, late.data());
+  }
   if (!twin.linear.empty()) StoreLinear(twin.linear, arrays);
   for (std::size_t n = 0; n < twin.levels.size(); ++n) {
     StoreLevel(twin.levels[n], LevelPrefix(n), arrays);
@@ -274,6 +278,15 @@ TrainedGround ReadTrainedGround(NpzFields* fields) {
   return {.known = true, .plane = Eigen::Vector4d(plane)};
 }
 
+ControllerMask ReadLate(NpzFields* fields, int controllers) {
+  fields->SetExtent("controllers", static_cast<std::size_t>(controllers));
+  const std::vector<int> late = fields->Ints("late", {"controllers"});
+  for (int one : late) {
+    if (one != 0 && one != 1) fields->Fail("late", fmt::format("holds {}, expected 0 or 1", one));
+  }
+  return {late.begin(), late.end()};
+}
+
 LinearPredictor ReadLinear(NpzFields* fields, int points, int controllers) {
   fields->SetExtent("features", static_cast<std::size_t>(LinearFeatures(controllers)));
   fields->SetExtent("3 points", 3 * static_cast<std::size_t>(points));
@@ -313,6 +326,7 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   fields.SetExtent("nodes+controllers", ExtentOf(twin.levels[0].system.position.cols()));
   if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
   SpreadOrder(&twin);
+  if (fields.Has("late")) twin.late = ReadLate(&fields, controllers);
   if (fields.Has("linear/mean")) twin.linear = ReadLinear(&fields, twin.points, controllers);
 
   for (const auto& [name, array] : arrays) {

@@ -6,6 +6,7 @@
 
 #include "tests/support/level_scene.h"
 #include "tests/support/random_system.h"
+#include "twin/plugin_state.h"
 #include "twin/simulator.h"
 
 namespace physpring {
@@ -68,9 +69,9 @@ double DistanceFromSimulator(bool controller_velocity, int substeps_in_step) {
 
   Random random(3);
   Points hands = system.position.rightCols(system.controllers);
-  scene.data()->plugin_state[scene.model().npluginstate - 1] = 1;  // they were there before
-  double* before = scene.data()->plugin_state + 3 * system.node_count();
-  Eigen::Map<Points>(before, 3, system.controllers) = hands;
+  const PluginState before(scene.data()->plugin_state, system.node_count(), system.controllers);
+  *before.known = 1;
+  Eigen::Map<Points>(before.controllers, 3, system.controllers) = hands;
   double distance = 0;
   for (int frame = 0; frame < kFrames; ++frame) {
     const Points next = hands + random.Box(system.controllers, 0.02);

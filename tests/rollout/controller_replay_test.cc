@@ -28,9 +28,6 @@ class ControllerReplayTest : public testing::TestWithParam<SpringKind> {
     return options;
   }
 
-  // The plugin takes a controller's velocity from where it was in the step before.
-  static double Tolerance() { return GetParam() == SpringKind::kTendon ? 1e-9 : 2e-5; }
-
   // Without a ground, as its recording is.
   static Twin GroundlessTwin() {
     Twin twin = SmallTwin(2);
@@ -52,7 +49,7 @@ TEST_P(ControllerReplayTest, MovesAsTheTrainerPredicts) {
   ASSERT_EQ(replay.particles.size(), predicted.size());
   EXPECT_GT((predicted.back() - predicted[0]).cwiseAbs().maxCoeff(), 1e-2);
   for (std::size_t t = 0; t < predicted.size(); ++t) {
-    EXPECT_LT((replay.particles[t] - predicted[t]).cwiseAbs().maxCoeff(), Tolerance())
+    EXPECT_LT((replay.particles[t] - predicted[t]).cwiseAbs().maxCoeff(), 1e-9)
         << "frame " << t;
   }
 }
@@ -64,7 +61,7 @@ TEST_P(ControllerReplayTest, LiftsALevelWithItsTwin) {
   const std::vector<Points> predicted = Predict(twin_, 1, recording_, {});
   const Lift lift(twin_, 1, recording_.start.leftCols(recording_.particle_count()));
   for (std::size_t t = 0; t < predicted.size(); ++t) {
-    EXPECT_LT((replay.particles[t] - lift.Apply(predicted[t])).cwiseAbs().maxCoeff(), Tolerance());
+    EXPECT_LT((replay.particles[t] - lift.Apply(predicted[t])).cwiseAbs().maxCoeff(), 1e-9);
   }
 }
 

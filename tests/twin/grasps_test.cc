@@ -31,7 +31,7 @@ TEST_F(HeldRecording, AGraspThatLastsIsTheController) {
   const Recording read = ReadChanged(), all = MakeRecording();
   EXPECT_EQ(read.controllers, all.controllers);
   EXPECT_TRUE(read.held.all());
-  EXPECT_TRUE(ReleasesOf(read).empty());
+  EXPECT_TRUE(LateGraspsOf(read).empty());
 }
 
 TEST_F(HeldRecording, AGraspThatEndsIsReleased) {
@@ -41,9 +41,9 @@ TEST_F(HeldRecording, AGraspThatEndsIsReleased) {
   SetValue("controllers", 11, kNan);
   const Recording read = ReadChanged(), all = MakeRecording();
   EXPECT_TRUE(RecordedInput(read, 1, 0).released.empty());
-  EXPECT_EQ(RecordedInput(read, 2, 0).released, Released{true});
-  EXPECT_EQ(RecordedInput(read, 3, 0).released, Released{true});
-  EXPECT_EQ(ReleasesOf(read), std::vector<Released>{Released{true}});
+  EXPECT_EQ(RecordedInput(read, 2, 0).released, ControllerMask{true});
+  EXPECT_EQ(RecordedInput(read, 3, 0).released, ControllerMask{true});
+  EXPECT_TRUE(LateGraspsOf(read).empty());
   EXPECT_EQ(read.controllers[1], all.controllers[1]);
   EXPECT_EQ(read.controllers[3], all.controllers[1]);  // it stands still
   EXPECT_EQ(read.start.rightCols(1), all.controllers[0]);
@@ -59,7 +59,7 @@ TEST_F(HeldRecording, AGraspThatBeginsLateIsCarriedBack) {
   const Eigen::Vector3d place = all.controllers[2].col(0) - Eigen::Vector3d::Constant(0.25);
   EXPECT_TRUE(read.start.col(4).isApprox(place, 1e-9));
   EXPECT_TRUE(read.rest.col(4).isApprox(place, 1e-9));
-  EXPECT_EQ(RecordedInput(read, 2, 0).released, Released{true});
+  EXPECT_EQ(RecordedInput(read, 2, 0).released, ControllerMask{true});
   EXPECT_TRUE(RecordedInput(read, 3, 0).released.empty());
 }
 
@@ -86,8 +86,14 @@ TEST_F(HeldRecording, EachGraspIsAControllerOfItsOwn) {
   EXPECT_EQ(read.force[3](0, 0), 3);
   EXPECT_TRUE(std::isnan(read.force[3](0, 1)));
   EXPECT_EQ(read.force[20](0, 1), 20);
-  const std::vector<Released> releases{{false, true}, {true, true}, {true, false}};
-  EXPECT_EQ(ReleasesOf(read), releases);
+  EXPECT_EQ(RecordedInput(read, 7, 0).released, (ControllerMask{false, true}));
+  EXPECT_EQ(RecordedInput(read, 8, 0).released, (ControllerMask{true, true}));
+  EXPECT_EQ(RecordedInput(read, 13, 0).released, (ControllerMask{true, false}));
+  EXPECT_TRUE(RecordedInput(read, 12, 0).attached.attached.empty());
+  EXPECT_EQ(RecordedInput(read, 13, 0).attached.attached, (ControllerMask{false, true}));
+  EXPECT_TRUE(RecordedInput(read, 14, 0).attached.attached.empty());
+  EXPECT_EQ(RecordedInput(read, 13, 0).attached.nodes, read.points[12]);
+  EXPECT_EQ(LateGraspsOf(read), (ControllerMask{false, true}));
 }
 
 TEST_F(HeldRecording, RefusesWhatIsNoGrasp) {

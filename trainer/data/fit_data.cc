@@ -9,6 +9,8 @@
 #include "twin/clock_offset.h"
 #include "twin/error.h"
 #include "twin/numbering.h"
+#include "twin/recorded_input.h"
+#include "twin/regrasp.h"
 
 namespace physpring {
 namespace {
@@ -28,6 +30,16 @@ void ExpectSameObject(const std::string& path, const Recording& recording,
   ExpectSame(path, first_path, "controllers", recording.controller_count(),
              first.controller_count());
   ExpectSame(path, first_path, "frames a second", recording.fps, first.fps);
+}
+
+// A twin has springs for one place of each grasp: that of its first recording.
+void WarnOfMovedGrasps(const Recording& first, Recording* recording) {
+  for (const MovedGrasp& moved : FindMovedGrasps(first.start, *recording)) {
+    recording->warnings.push_back(fmt::format(
+        "recording {}: controller {} holds the object {:.3g} m from where it does in {}, but the "
+        "twin's springs hold it there: leave this recording out, or train on it alone",
+        recording->name, moved.controller, moved.distance, first.name));
+  }
 }
 
 // Whether a particle is seen after frame 0, in the frames for fitting.
@@ -61,6 +73,7 @@ FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
     }
     ExpectNew(data.recordings, entries);
     WarnOfOddNumbering(data.recordings[0], entry.path, &data.recordings.back());
+    WarnOfMovedGrasps(data.recordings[0], &data.recordings.back());
     const int own = -static_cast<int>(data.recordings.size());
     data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
                                                                         : own);
@@ -81,6 +94,7 @@ Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool 
   twin.interior = recording.interior_count();
   twin.order = recording.order;
   twin.controller_velocity = controller_velocity;
+  twin.late = LateGraspsOf(recording);
   twin.fps = recording.fps;
   twin.gravity = recording.gravity;
   twin.ground = {.known = true, .plane = recording.ground};

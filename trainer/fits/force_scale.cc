@@ -15,22 +15,22 @@ namespace physpring {
 namespace {
 
 // The forces with which the controllers pull at the springs, 3 x controllers, N.
-Points ForcesOfControllers(const SpringMassSystem& system, const Points& position,
-                           const Points& velocity, const Points& hands, const Points& hand_velocity,
-                           const Released& released) {
+Points ForcesOfControllers(const SpringMassSystem& system, const Eigen::VectorXd& rest_length,
+                           const Points& position, const Points& velocity, const Points& hands,
+                           const Points& hand_velocity, const ControllerMask& released) {
   const int nodes = system.node_count();
   Points force = Points::Zero(3, system.controllers);
   for (int e = 0; e < system.spring_count(); ++e) {
     if (!system.IsControllerSpring(e)) continue;
     const auto [a, b] = std::minmax(system.springs[e][0], system.springs[e][1]);
     const int hand = b - nodes;
-    if (!released.empty() && released[hand]) continue;
+    if (Has(released, hand)) continue;
     const Eigen::Vector3d d = hands.col(hand) - position.col(a);
     const double length = d.norm();
     const Eigen::Vector3d n = d / length;
     const double rate = (hand_velocity.col(hand) - velocity.col(a)).dot(n);
     force.col(hand) +=
-        (system.stiffness[e] * (length - system.rest_length[e]) + system.dashpot[e] * rate) * n;
+        (system.stiffness[e] * (length - rest_length[e]) + system.dashpot[e] * rate) * n;
   }
   return force;
 }
@@ -63,7 +63,7 @@ void AddRecording(const Twin& twin, const Recording& recording, Sums* sums) {
   const SpringMassSystem& system = twin.levels[0].system;
   const SimulationOptions options{1 / recording.fps,
                                   ChooseSubsteps(twin.levels[0], recording.fps, 0),
-                                  twin.controller_velocity, ReleasesOf(recording)};
+                                  twin.controller_velocity, LateGraspsOf(recording)};
   const Simulator<double> simulator(system, EnvironmentOf(recording), options);
   const SpringMassSystem changed = ApplyEffects(system, recording.gravity).system;
   const double delay = ControllerDelay(system);
@@ -76,8 +76,9 @@ void AddRecording(const Twin& twin, const Recording& recording, Sums* sums) {
     Points velocity = (input.controllers_end - input.controllers_start) * recording.fps;
     if (!twin.controller_velocity) velocity.setZero();
     sums->Add(recording.force[static_cast<std::size_t>(frame)],
-              ForcesOfControllers(changed, simulator.Positions(state), simulator.Velocities(state),
-                                  input.controllers_end, velocity, input.released));
+              ForcesOfControllers(changed, simulator.RestLengths(state), simulator.Positions(state),
+                                  simulator.Velocities(state), input.controllers_end, velocity,
+                                  input.released));
   }
 }
 

@@ -16,7 +16,7 @@ class FrameWalkIn : public FrameWalk {
         loss_(loss),
         simulator_(system, EnvironmentOf(recording),
                    {1 / recording.fps, options.substeps, options.controller_velocity,
-                    ReleasesOf(recording)}),
+                    LateGraspsOf(recording)}),
         workspace_(simulator_),
         state_(simulator_.MakeState(recording.start.leftCols(system.node_count()),
                                     recording.velocity)) {}

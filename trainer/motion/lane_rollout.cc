@@ -27,7 +27,7 @@ class LaneRollout {
         observer_gain_(options.observer_gain),
         simulator_(systems, EnvironmentOf(recording_),
                    {1 / recording_.fps, options.substeps, options.controller_velocity,
-                    ReleasesOf(recording_)},
+                    LateGraspsOf(recording_)},
                    kernel),
         states_(systems.size()),
         moving_(systems.size()),

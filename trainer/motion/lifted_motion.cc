@@ -23,6 +23,7 @@ Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool
   Recording carried;
   carried.name = recording.name;
   carried.controllers = recording.controllers;
+  carried.held = recording.held;
   carried.fps = recording.fps;
   carried.gravity = recording.gravity;
   carried.ground = recording.ground;
@@ -31,6 +32,9 @@ Recording ForNodes(const Twin& twin, int level, const Recording& recording, bool
   carried.start.resize(3, nodes.cols() + controllers);
   carried.start << nodes, recording.start.rightCols(controllers);
   carried.velocity = AverageOverMembers(twin, level, recording.velocity);
+  for (const auto& [frame, shape] : recording.shape_when_held) {
+    carried.shape_when_held[frame] = AverageOverMembers(twin, level, shape);
+  }
   if (!observed) return carried;
   // a node is measured where all of its members are
   for (const Points& measured : recording.points) {

@@ -27,7 +27,7 @@ class RolloutIn : public Rollout {
         gradient_(system),
         simulator_(system, EnvironmentOf(recording_),
                    {1 / recording_.fps, options.substeps, options.controller_velocity,
-                    ReleasesOf(recording_)}),
+                    LateGraspsOf(recording_)}),
         workspaces_{typename Simulator<Real>::Workspace(simulator_),
                     typename Simulator<Real>::Workspace(simulator_)} {
     states_.push_back(

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What mjData.plugin_state holds of a level that the plugin physpring.springs moves.
+#ifndef PHYSPRING_TWIN_PLUGIN_STATE_H_
+#define PHYSPRING_TWIN_PLUGIN_STATE_H_
+
+namespace physpring {
+
+// Its parts, in this order. After a reset all are 0 but those that release.
+struct PluginState {
+  double* released;       // (controllers) set by the user: 0 = it holds
+  double* were_released;  // (controllers) in the step before
+  double* lag;            // (nodes, 3) m/s, see plugin/springs.h
+  double* controllers;    // (controllers, 3) where they were in the step before, m
+  double* known;          // (1) 0: there was no step before
+  // The effects' internal variables. At the end of them the rest length of each spring of a
+  // controller, m, in the order of the springs; 0: that of the level. Filled up to eights.
+  double* internal;
+
+  PluginState(double* state, int nodes, int controller_count)
+      : released(state),
+        were_released(released + controller_count),
+        lag(were_released + controller_count),
+        controllers(lag + 3 * nodes),
+        known(controllers + 3 * controller_count),
+        internal(known + 1) {}
+
+  // How many numbers stand before the last part.
+  static constexpr int PlainSize(int nodes, int controller_count) {
+    return 3 * nodes + 5 * controller_count + 1;
+  }
+};
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_PLUGIN_STATE_H_

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/regrasp.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "twin/local_motion.h"
+#include "twin/neighbours.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kSamePlace = 0.5;        // of the particles' spacing
+constexpr double kShortestSpring = 1e-3;  // of it
+
+void MoveGrasp(const MovedGrasp& moved, double arc_length, double shortest,
+               SpringMassSystem* system) {
+  const int nodes = system->node_count(), column = nodes + moved.controller;
+  system->position.col(column) = moved.place;
+  if (system->order.size() > 0) system->order[column] = arc_length;
+  std::vector<int> springs;  // the shortest one first
+  for (int e = 0; e < system->spring_count(); ++e) {
+    if (std::max(system->springs[e][0], system->springs[e][1]) == column) springs.push_back(e);
+  }
+  std::stable_sort(springs.begin(), springs.end(),
+                   [&](int a, int b) { return system->rest_length[a] < system->rest_length[b]; });
+  const Points position = system->position.leftCols(nodes);
+  const std::vector<Neighbour> nearest =
+      NeighbourSearch(position).Nearest(moved.place, static_cast<int>(springs.size()));
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    system->springs[springs[i]] = {static_cast<int>(nearest[i].index), column};
+    system->rest_length[springs[i]] = std::max(nearest[i].distance, shortest);
+  }
+}
+
+}  // namespace
+
+std::vector<MovedGrasp> FindMovedGrasps(const Points& reference, const Recording& recording) {
+  std::vector<MovedGrasp> moved;
+  const int particles = recording.particle_count();
+  const Points shape = reference.leftCols(particles), start = recording.start.leftCols(particles);
+  if (particles < 2) return moved;
+  const double spacing = MedianSpacing(shape);
+  const LocalMotion motion(start, shape);
+  for (int c = 0; c < recording.controller_count(); ++c) {
+    const Eigen::Vector3d place = *motion.Move(recording.start.col(particles + c));
+    const double distance = (place - reference.col(particles + c)).norm();
+    if (distance > kSamePlace * spacing) moved.push_back({c, place, distance});
+  }
+  return moved;
+}
+
+void MoveGrasps(const std::vector<MovedGrasp>& moved, const Recording& recording, Twin* twin) {
+  const int particles = recording.particle_count();
+  const double spacing = MedianSpacing(Points(twin->levels[0].system.position.leftCols(particles)));
+  for (const MovedGrasp& one : moved) {
+    const int column = particles + one.controller;
+    const double arc_length = recording.order.size() > 0 ? recording.order[column] : 0;
+    if (twin->order.size() > 0) twin->order[column] = arc_length;
+    for (TwinLevel& level : twin->levels) {
+      MoveGrasp(one, arc_length, kShortestSpring * spacing, &level.system);
+    }
+  }
+}
+
+Twin HeldAsIn(Recording* recording, Twin twin) {
+  if (twin.TrainingOn(recording->hash)) return twin;
+  const auto moved = FindMovedGrasps(twin.levels[0].system.position, *recording);
+  MoveGrasps(moved, *recording, &twin);
+  for (const MovedGrasp& one : moved) {
+    recording->notes.push_back(fmt::format(
+        "recording {}: controller {} holds the object {:.3g} m from where it held it in the "
+        "training; its springs hold the nodes that are near it there",
+        recording->name, one.controller, one.distance));
+  }
+  return twin;
+}
+
+}  // namespace physpring
