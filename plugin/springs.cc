@@ -180,9 +180,9 @@ void Springs::ReadGrasps(const PluginState& plugin_state) {
     attached.push_back(!released[c] && plugin_state.were_released[c] != 0);
   }
   if (std::find(attached.begin(), attached.end(), true) != attached.end()) TakeHold(attached);
-  grasps.CopyLengths(state_, &next_);
+  grasps.CopyShifts(state_, &next_);
   Eigen::VectorXd rest_length = system.rest_length;
-  grasps.ReadLengths(state_, &rest_length);
+  grasps.AddShifts(state_, &rest_length);
   if (released == released_ && rest_length == rest_length_) return;
   released_ = std::move(released);
   rest_length_ = std::move(rest_length);

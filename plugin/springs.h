@@ -14,7 +14,7 @@
 //
 // Controllers may let go and take hold: plugin_state begins with a number for each of them that the
 // user sets, 0 = it holds. After a reset it is what the attribute `released` says. One that takes
-// hold again relaxes its springs (twin/grasp_springs.h).
+// hold again takes the level as it is then (twin/grasp_springs.h).
 #ifndef PHYSPRING_PLUGIN_SPRINGS_H_
 #define PHYSPRING_PLUGIN_SPRINGS_H_
 
@@ -46,7 +46,7 @@ struct SpringsModel {
   SpringsModel(const mjModel* model, int instance);
 
   int state_size() const { return step.state_size() + grasps.records(); }
-  // How many numbers are the effects' internal variables and the lengths of grasps.
+  // How many numbers are the effects' internal variables and the shifts of grasps.
   int internal_size() const { return kRecordSize * (state_size() - step.first_internal()); }
 };
 

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "rollout/scene.h"
 #include "twin/attribute_names.h"
 #include "twin/error.h"
 
@@ -129,10 +130,16 @@ void ExportedObject::StartControllers(const Points& position, mjData* data) cons
 std::vector<ExportedObject::GraspSpring> ExportedObject::GraspSprings() const {
   std::vector<GraspSpring> springs;
   if (instance_ < 0) return springs;
+  const DataPtr data = MakeData(model_);
+  mj_kinematics(&model_, data.get());
   std::istringstream ends(mj_getPluginConfig(&model_, instance_, kAttrSprings));
   for (int a = 0, b = 0; ends >> a >> b;) {
     const auto [node, other] = std::minmax(a, b);
-    if (other >= node_count()) springs.push_back({node, other - node_count()});
+    const int controller = other - node_count();
+    if (controller < 0) continue;
+    const auto arm = ConstVector(data->xpos + 3 * controllers_[controller]) -
+                     ConstVector(data->xpos + 3 * nodes_[node]);
+    springs.push_back({node, controller, arm.norm()});
   }
   return springs;
 }
@@ -146,13 +153,13 @@ void ExportedObject::SetGrasps(const ControllerMask& released, const Attachment&
     if (Has(taken.attached, c)) state->were_released[c] = 0;  // what it holds is said here
   }
   const std::size_t records = (grasp_springs_.size() + kRecordSize - 1) / kRecordSize;
-  double* length = data->plugin_state + model_.plugin_stateadr[instance_] +
-                   model_.plugin_statenum[instance_] - kRecordSize * records;
-  for (const auto& [node, controller] : grasp_springs_) {
+  double* shift = data->plugin_state + model_.plugin_stateadr[instance_] +
+                  model_.plugin_statenum[instance_] - kRecordSize * records;
+  for (const auto& [node, controller, reference] : grasp_springs_) {
     if (Has(taken.attached, controller)) {
-      *length = (taken.controllers.col(controller) - taken.nodes.col(node)).norm();
+      *shift = (taken.controllers.col(controller) - taken.nodes.col(node)).norm() - reference;
     }
-    ++length;
+    ++shift;
   }
 }
 

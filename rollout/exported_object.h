@@ -45,6 +45,7 @@ class ExportedObject {
   // A spring that joins a controller to a node.
   struct GraspSpring {
     int node, controller;
+    double reference;  // its length at qpos0, m
   };
 
   // None if the springs are not the plugin's.

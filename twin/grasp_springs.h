@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The springs of controllers that let go and take hold. Where a controller is released, its springs
 // have no stiffness and no dashpot. One that takes hold within a motion takes the body as it is
-// then: its springs are relaxed at that moment, with rest lengths
-//   L_e = |x_c - x_i|
-// of where controllers and nodes are then (of a recording: as measured). These lengths are part of
-// the state. They stand behind the effects' internal variables, eight
-// to a record, and are 0 until then: the spring has the length of the system.
+// then (of a recording: as measured). At that moment its springs are as long or as short of their
+// rest lengths L as in the reference configuration X. So the rest lengths become
+//   L_e + s_e,   s_e = |x_c - x_i| - |X_c - X_i|
+// These shifts s are part of the state. They stand behind the effects' internal variables, eight to
+// a record, and are 0 at first.
 #ifndef PHYSPRING_TWIN_GRASP_SPRINGS_H_
 #define PHYSPRING_TWIN_GRASP_SPRINGS_H_
 
@@ -34,43 +34,38 @@ class GraspSprings {
   using State = NodeStates<Real>;
 
   // `late`: the controllers that may take hold within a motion. `blocks`: the system's springs in
-  // the kernel's order. The lengths stand in a state from `first_record` on.
+  // the kernel's order. The shifts stand in a state from `first_record` on.
   GraspSprings(const SpringMassSystem& system, const ControllerMask& late,
                const SpringBlocks<Real>& blocks, int first_record);
 
-  bool has_late() const { return lengths_ > 0; }
-  int records() const { return (lengths_ + kRecordSize - 1) / kRecordSize; }
+  bool has_late() const { return shifts_ > 0; }
+  int records() const { return (shifts_ + kRecordSize - 1) / kRecordSize; }
 
-  // Controllers take hold: sets the lengths of their springs.
+  // Controllers take hold: sets the shifts of their springs.
   void Attach(const Attachment& attachment, State* state) const;
-  // Gives a level that has the system's springs the lengths, and opens what is released.
+  // Changes a level that has the system's springs: adds the shifts, and opens what is released.
   void Apply(const ControllerMask& released, const State& state, LevelStep<Real>* step) const;
-  // Sets their entries of all springs' rest lengths, (springs), m.
-  void ReadLengths(const State& state, Eigen::VectorXd* rest_length) const;
-  // Keeps the lengths through a frame.
-  void CopyLengths(const State& from, State* to) const;
-
-  // Takes out of a gradient with respect to a level so changed what is none with respect to the
-  // system: springs that were not there, lengths of the state.
-  void ApplyAdjoint(const ControllerMask& released, const State& state,
-                    SystemGradient* gradient) const;
+  // Takes out of a gradient with respect to a level so changed what belongs to opened springs.
+  void ApplyAdjoint(const ControllerMask& released, SystemGradient* gradient) const;
+  // Adds the shifts to all springs' rest lengths, (springs), m.
+  void AddShifts(const State& state, Eigen::VectorXd* rest_length) const;
+  // Keeps the shifts through a frame.
+  void CopyShifts(const State& from, State* to) const;
 
  private:
   struct Spring {
     int index, node, controller;
-    int slot;         // in the kernel's order
-    int length = -1;  // which of the lengths in the state; -1: none, its controller is not late
+    int slot;          // in the kernel's order
+    double reference;  // its length in the reference configuration, m
+    int shift = -1;    // which of the shifts in the state; -1: none, its controller is not late
   };
 
-  static bool IsSet(const Spring& spring, const Real* lengths) {
-    return spring.length >= 0 && lengths[spring.length] > 0;
-  }
-  Real* Lengths(State* state) const { return Internal(state, first_record_); }
-  const Real* Lengths(const State& state) const { return Internal(state, first_record_); }
+  Real* Shifts(State* state) const { return Internal(state, first_record_); }
+  const Real* Shifts(const State& state) const { return Internal(state, first_record_); }
 
-  int nodes_, first_record_;
-  int lengths_ = 0;
-  std::vector<Spring> springs_;  // of all controllers
+  int first_record_;
+  int shifts_ = 0;
+  std::vector<Spring> springs_;  // of all controllers, in the order of the system
 };
 
 }  // namespace physpring

@@ -77,9 +77,11 @@ class LevelStep {
   // The parameters, masses, drag and effects of a system of the same topology and effects.
   void SetParameters(const SpringMassSystem& system);
 
-  // Changes one of springs(): its rest length, m, or that it pulls at nothing. SetParameters undoes
-  // it.
-  void SetRestLength(int slot, Real length) { springs_.rest_length[slot] = length; }
+  // Changes one of springs(): it is longer at rest by `shift`, but at least `shortest`, m, or it
+  // pulls at nothing. SetParameters undoes it.
+  void ShiftRestLength(int slot, Real shift, Real shortest) {
+    springs_.rest_length[slot] = std::max(springs_.rest_length[slot] + shift, shortest);
+  }
   void OpenSpring(int slot) { springs_.stiffness[slot] = springs_.dashpot[slot] = 0; }
 
   const SpringBlocks<Real>& springs() const { return springs_; }

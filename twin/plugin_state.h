@@ -12,8 +12,9 @@ struct PluginState {
   double* lag;            // (nodes, 3) m/s, see plugin/springs.h
   double* controllers;    // (controllers, 3) where they were in the step before, m
   double* known;          // (1) 0: there was no step before
-  // The effects' internal variables. At the end of them the rest length of each spring of a
-  // controller, m, in the order of the springs; 0: that of the level. Filled up to eights.
+  // The effects' internal variables, then the shift of the rest length of each spring of a
+  // controller, m, in the order of the springs (twin/grasp_springs.h). Both are filled up to
+  // eights.
   double* internal;
 
   PluginState(double* state, int nodes, int controller_count)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "twin/local_motion.h"
@@ -35,6 +36,19 @@ void MoveGrasp(const MovedGrasp& moved, double arc_length, double shortest,
   }
 }
 
+// Whether a controller is as far from the particles that are nearest to it in the reference as it
+// is there. However the body starts, these distances hardly change.
+bool HoldsTheSame(const Eigen::Vector3d& place, const Points& start, const Eigen::Vector3d& known,
+                  const Points& shape, const NeighbourSearch& search, double spacing) {
+  constexpr int kNearest = 3;
+  double change = 0, count = 0;
+  for (const Neighbour& one : search.Nearest(known, kNearest)) {
+    change += std::abs((place - start.col(one.index)).norm() - one.distance);
+    ++count;
+  }
+  return change < kSamePlace * spacing * count;
+}
+
 }  // namespace
 
 std::vector<MovedGrasp> FindMovedGrasps(const Points& reference, const Recording& recording) {
@@ -44,10 +58,13 @@ std::vector<MovedGrasp> FindMovedGrasps(const Points& reference, const Recording
   if (particles < 2) return moved;
   const double spacing = MedianSpacing(shape);
   const LocalMotion motion(start, shape);
+  const NeighbourSearch search(shape);
   for (int c = 0; c < recording.controller_count(); ++c) {
-    const Eigen::Vector3d place = *motion.Move(recording.start.col(particles + c));
-    const double distance = (place - reference.col(particles + c)).norm();
-    if (distance > kSamePlace * spacing) moved.push_back({c, place, distance});
+    const Eigen::Vector3d place = recording.start.col(particles + c);
+    const Eigen::Vector3d known = reference.col(particles + c);
+    if (HoldsTheSame(place, start, known, shape, search, spacing)) continue;
+    const Eigen::Vector3d there = *motion.Move(place);
+    moved.push_back({c, there, (there - known).norm()});
   }
   return moved;
 }

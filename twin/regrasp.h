@@ -17,9 +17,10 @@ struct MovedGrasp {
   double distance;        // from the place that the reference holds, m
 };
 
-// The controllers of `recording` that hold the body more than half a spacing of its particles from
-// where those of `reference` do: 3 x (particles + controllers), m, as many as in the recording. A
-// place is carried from frame 0 to the reference with the particles around it.
+// The controllers of `recording` that hold other particles than those of `reference` do, 3 x
+// (particles + controllers), m, as many as in the recording: their distances from the three that
+// are nearest in the reference differ by more than half a spacing, on the average. A place is
+// carried from frame 0 to the reference with the particles around it.
 std::vector<MovedGrasp> FindMovedGrasps(const Points& reference, const Recording& recording);
 
 // Lets the twin's controllers hold there: in each level as many of the nearest nodes as before,

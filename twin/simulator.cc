@@ -62,7 +62,7 @@ Points Simulator<Real>::Velocities(const State& state) const {
 template <class Real>
 Eigen::VectorXd Simulator<Real>::RestLengths(const State& state) const {
   Eigen::VectorXd length = step_.effects().changed().system.rest_length;
-  grasps_.ReadLengths(state, &length);
+  grasps_.AddShifts(state, &length);
   return length;
 }
 
@@ -98,7 +98,7 @@ template <class Real>
 void Simulator<Real>::EndFrame(const FrameInput& input, const Workspace& workspace,
                                State* state) const {
   PlaceControllers(input, options_.substeps - 1, state);
-  if (workspace.own_step) grasps_.CopyLengths(workspace.start, state);
+  if (workspace.own_step) grasps_.CopyShifts(workspace.start, state);
 }
 
 template <class Real>
@@ -187,7 +187,7 @@ void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gra
             NodeState<Real>{});
   SystemGradient frame(step.effects().changed().system);
   step.AddGradients(node_step_.View(), h_, buffers, &frame);
-  if (workspace->own_step) grasps_.ApplyAdjoint(input.released, workspace->start, &frame);
+  if (workspace->own_step) grasps_.ApplyAdjoint(input.released, &frame);
   step.effects().FinishGradient(input.delay_rate_start, input.delay_rate_end, options_.frame_time,
                                 buffers.effects, &frame);
   *gradient += frame;

@@ -58,6 +58,7 @@ TEST(Messages, NameAttributeAndValue) {
       {"substep", "0", "attribute 'substep' is 0 s, expected more than 0"},
       {"substep", "1", "attribute 'substep' is 1 s, expected more than 0 and at most 0.0"},
       {"controller_velocity", "2", "attribute 'controller_velocity' is 2, expected 0 or 1"},
+      {"released", "2", "released[0] is 2, expected 0 or 1"},
       {"nodes", "3", "attribute 'nodes' is 3, but the model has 2"},
       {"controllers", "0", "attribute 'controllers' is 0, but the model has 1"},
       {"restitution", "1.5", "restitution is 1.5, expected 0 to 1"},

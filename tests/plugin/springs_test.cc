@@ -96,6 +96,45 @@ TEST(Springs, TrajectoryIsThatOfTheSimulator) {
   }
 }
 
+// Controller 1 lets go after frame 3, and takes hold again after frame 8.
+TEST(Springs, ControllersLetGoAndTakeHold) {
+  constexpr int kFrames = 14, kOpened = 4, kTaken = 9, kSubsteps = 20, kSubstepsInStep = 4;
+  constexpr double kSubstep = 0.5e-3;  // s
+  const SpringMassSystem system = RandomSystem(72, 3, 11);
+  const Motion motion(system);
+  LevelScene scene(
+      system, {.timestep = kSubstep * kSubstepsInStep, .substep = kSubstep, .gravity = kGravity});
+  scene.SetState(motion.start, motion.velocity);
+  const PluginState plugin(scene.data()->plugin_state, system.node_count(), system.controllers);
+  Points hands = system.position.rightCols(system.controllers);
+  *plugin.known = 1;
+  Eigen::Map<Points>(plugin.controllers, 3, system.controllers) = hands;
+  const Simulator<double> simulator(
+      system, {.gravity = kGravity, .ground = {}},
+      {.frame_time = kSubsteps * kSubstep, .substeps = kSubsteps, .late = {false, true, false}});
+  Simulator<double>::Workspace workspace(simulator);
+  NodeStates<double> state = simulator.MakeState(motion.start, motion.velocity);
+  Random random(3);
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const Points next = hands + random.Box(system.controllers, 0.02);
+    FrameInput input{hands, next, {}};
+    const bool open = frame >= kOpened && frame < kTaken;
+    if (open) input.released = {false, true, false};
+    if (frame == kTaken) {
+      input.attached = {{false, true, false}, hands, simulator.Positions(state)};
+    }
+    simulator.AdvanceFrame(input, &state, &workspace);
+    plugin.released[1] = open ? 1 : 0;
+    for (int substep = kSubstepsInStep; substep <= kSubsteps; substep += kSubstepsInStep) {
+      scene.SetControllers(hands + (next - hands) * (static_cast<double>(substep) / kSubsteps));
+      scene.Step();
+    }
+    hands = next;
+    EXPECT_LT(Greatest(simulator.Positions(state) - scene.Positions()), 1e-9) << frame;
+    EXPECT_EQ(simulator.RestLengths(state) == system.rest_length, frame < kTaken);
+  }
+}
+
 // After 20 ms from random velocities.
 double DistanceFromTendons(double timestep) {
   constexpr double kSubstep = 50e-6, kTime = 20e-3;  // s

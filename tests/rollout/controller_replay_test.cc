@@ -8,6 +8,7 @@
 #include "tests/support/exported_folder.h"
 #include "tests/support/small_twin.h"
 #include "twin/error.h"
+#include "twin/grasps.h"
 #include "twin/lift.h"
 #include "twin/predict.h"
 
@@ -49,8 +50,7 @@ TEST_P(ControllerReplayTest, MovesAsTheTrainerPredicts) {
   ASSERT_EQ(replay.particles.size(), predicted.size());
   EXPECT_GT((predicted.back() - predicted[0]).cwiseAbs().maxCoeff(), 1e-2);
   for (std::size_t t = 0; t < predicted.size(); ++t) {
-    EXPECT_LT((replay.particles[t] - predicted[t]).cwiseAbs().maxCoeff(), 1e-9)
-        << "frame " << t;
+    EXPECT_LT((replay.particles[t] - predicted[t]).cwiseAbs().maxCoeff(), 1e-9) << "frame " << t;
   }
 }
 
@@ -62,6 +62,32 @@ TEST_P(ControllerReplayTest, LiftsALevelWithItsTwin) {
   const Lift lift(twin_, 1, recording_.start.leftCols(recording_.particle_count()));
   for (std::size_t t = 0; t < predicted.size(); ++t) {
     EXPECT_LT((replay.particles[t] - lift.Apply(predicted[t])).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+// Controller 1 takes hold in frame 5; tendons would hold on from the start.
+TEST_P(ControllerReplayTest, TakesHoldAsTheRecordingDoes) {
+  Recording recording = recording_;
+  recording.held.resize(recording.frame_count(), 2);
+  recording.held.setConstant(true);
+  recording.held.col(1).head(5).setConstant(false);
+  FindShapesWhenHeld(&recording);
+  const auto replay = [&](int level) {
+    const std::string scene = folder_.File(level == 0 ? "scene.xml" : "scene_level1.xml");
+    return ReplayControllers(scene, recording, &twin_, {}).particles;
+  };
+  if (GetParam() == SpringKind::kTendon) {
+    EXPECT_THROW(replay(0), Error);
+    return;
+  }
+  const Lift lift(twin_, 1, recording_.start.leftCols(recording_.particle_count()));
+  for (int level : {0, 1}) {
+    const std::vector<Points> replayed = replay(level),
+                              predicted = Predict(twin_, level, recording, {});
+    for (std::size_t t = 0; t < predicted.size(); ++t) {
+      const Points particles = level == 0 ? predicted[t] : lift.Apply(predicted[t]);
+      EXPECT_LT((replayed[t] - particles).cwiseAbs().maxCoeff(), 1e-9) << level << " " << t;
+    }
   }
 }
 
