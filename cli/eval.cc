@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "report/eval_report.h"
 #include "report/evaluation.h"
 #include "report/picture/page.h"
+#include "tracker/anchor.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/atomic_file.h"
 #include "twin/clock_offset.h"
@@ -33,6 +35,7 @@ struct EvalArguments {
   std::vector<std::string> recordings;
   std::string json, trajectory, picture;
   PredictOptions options;
+  int anchor = 0;  // 0: none
   int threads = 1;
 };
 
@@ -45,7 +48,7 @@ CLI::Validator EndsWithHtml() {
 }
 
 EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
-                                const PredictOptions& options) {
+                                const EvalArguments& arguments) {
   EvaluatedRecording evaluated;
   evaluated.path = entry.path;
   evaluated.recording = ReadRecordingFor(twin, entry.path);
@@ -53,7 +56,11 @@ EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
   ExpectSameObject(twin, evaluated.recording);
   const Twin held = HeldAsIn(&evaluated.recording, twin);
   WarnOfOddNumbering(held, entry.path, &evaluated.recording);
-  evaluated.result = Evaluate(held, evaluated.recording, options);
+  evaluated.result = Evaluate(held, evaluated.recording, arguments.options);
+  if (arguments.anchor > 0) {
+    evaluated.anchored =
+        Evaluate(held, AnchoredAt(arguments.anchor, held, evaluated.recording), arguments.options);
+  }
   return evaluated;
 }
 
@@ -85,14 +92,17 @@ void WarnIfUseless(const Evaluation& evaluation) {
 }
 
 void Run(const EvalArguments& arguments) {
-  const PredictOptions& options = arguments.options;
-  Evaluation evaluation{arguments.twin, ReadTwin(arguments.twin), options.single_precision, {}};
+  Evaluation evaluation{arguments.twin,
+                        ReadTwin(arguments.twin),
+                        arguments.options.single_precision,
+                        arguments.anchor,
+                        {}};
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
   ExpectWritable(arguments, entries);
   WarnIfUnfinished(evaluation.twin, arguments.twin);
   evaluation.recordings.resize(entries.size());
   ParallelFor(static_cast<int>(entries.size()), arguments.threads, [&](int i) {
-    evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], options);
+    evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], arguments);
   });
 
   std::vector<Recording> recordings;
@@ -133,6 +143,11 @@ void AddEvalCommand(CLI::App& app) {
   command->add_option("--picture", arguments->picture, "write a page with pictures and a film")
       ->check(EndsWithHtml())
       ->type_name("FILE.html");
+  command
+      ->add_option("--anchor", arguments->anchor,
+                   "also predict anew from this frame on, from the state that `track` finds there")
+      ->check(WholeNumberBetween(1, std::numeric_limits<int>::max()))
+      ->type_name("FRAME");
   AddPrecision(command, &arguments->options.single_precision);
   AddNumberOrAuto(command, "--substeps", &arguments->options.substeps,
                   "sub-steps of a frame; auto: stable ones, no longer than in training");

@@ -10,6 +10,7 @@
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/track_stream.h"
 #include "cli/warnings.h"
 #include "tracker/track_recording.h"
 #include "twin/clock_offset.h"
@@ -23,6 +24,8 @@ struct TrackArguments {
   std::string twin, recording, output;
   TrackOptions options;
   bool force = false;
+  bool stream = false;
+  StreamOptions stream_options;
 };
 
 void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
@@ -61,6 +64,7 @@ void WarnIfUseless(const TrackedMotion& motion) {
 }
 
 void Run(const TrackArguments& arguments) {
+  if (arguments.stream) return TrackStream(arguments.twin, arguments.stream_options);
   ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
   ExpectNew(arguments.output, arguments.force);
   const Twin trained = ReadTwin(arguments.twin);
@@ -91,13 +95,11 @@ void AddTrackCommand(CLI::App& app) {
       "all its particles are, and how fast.");
   const auto arguments = std::make_shared<TrackArguments>();
   command->add_option("twin", arguments->twin, "twin")->required()->type_name("TWIN.twin.npz");
-  command->add_option("recording", arguments->recording, "recording")
-      ->required()
-      ->type_name("REC.npz");
-  command->add_option("-o,--output", arguments->output, "states to write")
-      ->required()
-      ->check(FileNameWith(".npz"))
-      ->type_name("STATES.npz");
+  CLI::Option* recording =
+      command->add_option("recording", arguments->recording, "recording")->type_name("REC.npz");
+  CLI::Option* output = command->add_option("-o,--output", arguments->output, "states to write")
+                            ->check(FileNameWith(".npz"))
+                            ->type_name("STATES.npz");
   command->add_flag("--cloud", arguments->options.cloud,
                     "follow the recording's `surface`, points without names, and judge by its "
                     "points");
@@ -109,7 +111,30 @@ void AddTrackCommand(CLI::App& app) {
       ->type_name("PART");
   AddSeed(command, &arguments->options.seed, "of the points that are hidden");
   command->add_flag("--force", arguments->force, "overwrite a file");
-  command->callback([arguments] { Run(*arguments); });
+  CLI::Option* stream =
+      command
+          ->add_flag("--stream", arguments->stream,
+                     "instead of a recording: frames on standard input, states on standard output, "
+                     "a line of JSON each (docs/track.md)")
+          ->excludes(recording)
+          ->excludes(output);
+  command->add_option("--fps", arguments->stream_options.fps, "of the stream; default: the twin's")
+      ->check(NumberBetween(0.1, 1e5))
+      ->needs(stream)
+      ->type_name("1/S");
+  command
+      ->add_option("--noise", arguments->stream_options.noise,
+                   "standard deviation of a coordinate of the stream's points")
+      ->capture_default_str()
+      ->check(NumberBetween(1e-6, 1))
+      ->needs(stream)
+      ->type_name("M");
+  command->callback([arguments, recording, output] {
+    if (!arguments->stream && (recording->empty() || output->empty())) {
+      throw CLI::RequiredError("a recording and --output, or --stream");
+    }
+    Run(*arguments);
+  });
 }
 
 }  // namespace physpring

@@ -148,6 +148,30 @@ void AddRows(const std::vector<Row>& rows, Json* json) {
   }
 }
 
+std::string FormatAnchored(const Evaluation& evaluation) {
+  std::string text = fmt::format(
+      "\nafter frame {}, track in mm: predicted from frame 0 on, and anew from what is "
+      "tracked in frame {}\n{:<10} {:>8} {:>8}\n",
+      evaluation.anchor, evaluation.anchor, "", "frame 0", "anew");
+  for (const EvaluatedRecording& evaluated : evaluation.recordings) {
+    text += evaluated.path + "\n";
+    for (const AnchoredRow& row : AnchoredRowsOf(evaluated, evaluation.anchor)) {
+      text += fmt::format("{:<10} {:>8} {:>8}\n", row.name, Millimetres(row.blind),
+                          Millimetres(row.anchored));
+    }
+  }
+  return text;
+}
+
+Json AnchoredAsJson(const EvaluatedRecording& evaluated, int anchor) {
+  Json json = {{"frame", anchor}};
+  for (const AnchoredRow& row : AnchoredRowsOf(evaluated, anchor)) {
+    json[row.name] = {{"track_from_start", Nullable(row.blind)},
+                      {"track_from_anchor", Nullable(row.anchored)}};
+  }
+  return json;
+}
+
 Npz TrajectoryOf(const EvaluatedRecording& evaluated) {
   Npz arrays;
   for (const LevelResult& level : evaluated.result.levels) {
@@ -178,6 +202,7 @@ std::string FormatTables(const Evaluation& evaluation) {
   if (recordings > 1) {
     text += fmt::format("mean over {} recordings\n{}", recordings, FormatRows(means, columns));
   }
+  if (evaluation.anchor > 0) text += FormatAnchored(evaluation);
   return text;
 }
 
@@ -192,6 +217,9 @@ std::string FormatJson(const Evaluation& evaluation) {
                       {"frames", evaluated.recording.frame_count()},
                       {"first_predicted", evaluated.result.first_predicted}};
     AddRows(RowsOf(evaluated), &recording);
+    if (evaluated.anchored) {
+      recording["anchored"] = AnchoredAsJson(evaluated, evaluation.anchor);
+    }
     json["recordings"].push_back(recording);
   }
   // a file name need not be UTF-8

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace physpring {
 namespace {
@@ -111,6 +112,23 @@ std::vector<Row> MeanRows(const Evaluation& evaluation) {
   std::vector<Row> means;
   for (const std::vector<Row>& rows : same_row) means.push_back(Mean(rows));
   return means;
+}
+
+std::vector<AnchoredRow> AnchoredRowsOf(const EvaluatedRecording& evaluated, int anchor) {
+  const RecordingResult &blind = evaluated.result, &anchored = *evaluated.anchored;
+  const int frames = evaluated.recording.frame_count();
+  const auto after = [&](const FrameErrors& whole, const FrameErrors& part) {
+    return std::pair{MeanOverFrames(whole.track, anchor + 1, frames).value,
+                     MeanOverFrames(part.track, 1, frames - anchor).value};
+  };
+  std::vector<AnchoredRow> rows;
+  for (std::size_t n = 0; n < blind.levels.size(); ++n) {
+    const auto [whole, part] = after(blind.levels[n].lifted, anchored.levels[n].lifted);
+    rows.push_back({fmt::format("level {}", blind.levels[n].level), whole, part});
+  }
+  const auto [whole, part] = after(blind.baselines[0].errors, anchored.baselines[0].errors);
+  rows.push_back({blind.baselines[0].name, whole, part});
+  return rows;
 }
 
 }  // namespace physpring

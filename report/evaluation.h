@@ -20,12 +20,14 @@ struct EvaluatedRecording {
   bool published_l1 = false;  // whether the published measure is meant for it
   Recording recording;
   RecordingResult result;
+  std::optional<RecordingResult> anchored;  // of the frames from Evaluation::anchor on
 };
 
 struct Evaluation {
   std::string twin_path;
   Twin twin;
   bool single_precision = false;
+  int anchor = 0;  // the frame in which the predictions begin anew; 0: they do not
   std::vector<EvaluatedRecording> recordings;
 };
 
@@ -50,6 +52,16 @@ struct Row {
 };
 
 std::vector<Row> RowsOf(const EvaluatedRecording& evaluated);
+
+// Mean track errors after the frame of the anchor, m; none where no tracked point is seen.
+struct AnchoredRow {
+  std::string name;                       // "level 0", "motionless"
+  std::optional<double> blind, anchored;  // predicted from frame 0 on, from the anchor on
+};
+
+// The rows of a recording that has an anchor: lifted errors of the levels, then the motionless
+// object, which is as at the start or as tracked at the anchor.
+std::vector<AnchoredRow> AnchoredRowsOf(const EvaluatedRecording& evaluated, int anchor);
 
 // The rows of the whole evaluation: means in which every recording counts once.
 std::vector<Row> MeanRows(const Evaluation& evaluation);

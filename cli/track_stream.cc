@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/track_stream.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/checkpoint.h"
+#include "tracker/live_tracker.h"
+#include "twin/error.h"
+
+namespace physpring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// [[x, y, z], null, ...] as 3 x any number; null: NaN.
+Points PointsOf(const Json& frame, const char* key, bool may_be_unseen) {
+  const auto found = frame.find(key);
+  if (found == frame.end() || found->is_null()) return Points(3, 0);
+  if (!found->is_array()) throw Error(fmt::format("'{}' is not a list of points", key));
+  Points points(3, static_cast<Eigen::Index>(found->size()));
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    const Json& point = (*found)[i];
+    const bool is_point = point.is_array() && point.size() == 3 && point[0].is_number() &&
+                          point[1].is_number() && point[2].is_number();
+    if (!is_point && !(may_be_unseen && point.is_null())) {
+      throw Error(
+          fmt::format("'{}' [{}] is not [x, y, z]{}", key, i, may_be_unseen ? " or null" : ""));
+    }
+    for (int j = 0; j < 3; ++j) {
+      points(j, static_cast<Eigen::Index>(i)) = is_point ? point[j].get<double>() : kNan;
+    }
+  }
+  return points;
+}
+
+LiveFrame ParseFrame(const std::string& line) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object()) throw Error("is not an object of JSON");
+  for (const auto& item : json.items()) {
+    if (item.key() != "points" && item.key() != "cloud" && item.key() != "controllers") {
+      throw Error(fmt::format("'{}' is not 'points', 'cloud' or 'controllers'", item.key()));
+    }
+  }
+  return {{PointsOf(json, "points", true), PointsOf(json, "cloud", false)},
+          PointsOf(json, "controllers", false)};
+}
+
+// To a micrometre, or a micrometre a second.
+Json Rounded(const Points& points) {
+  Json list = Json::array();
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    Json point = Json::array();
+    for (int j = 0; j < 3; ++j) point.push_back(std::round(1e6 * points(j, i)) / 1e6);
+    list.push_back(std::move(point));
+  }
+  return list;
+}
+
+void PrintState(int frame, const StateTracker& state) {
+  const Json json = {
+      {"frame", frame},
+      {"position", Rounded(state.position())},
+      {"velocity", Rounded(state.velocity())},
+      {"surprise", std::isfinite(state.surprise()) ? Json(state.surprise()) : Json(nullptr)}};
+  fmt::print("{}\n", json.dump());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void TrackStream(const std::string& twin_path, const StreamOptions& options) {
+  const Twin twin = ReadTwin(twin_path);
+  WarnIfUnfinished(twin, twin_path);
+  const double fps = options.fps > 0 ? options.fps : twin.fps;
+  std::optional<LiveTracker> tracker;
+  std::string line;
+  for (int frame = 0; std::getline(std::cin, line); ++frame) {
+    try {
+      const LiveFrame measured = ParseFrame(line);
+      if (tracker) {
+        tracker->Advance(measured);
+      } else {
+        tracker.emplace(twin, fps, options.noise, measured);
+      }
+    } catch (const Error& error) {
+      throw Error(fmt::format("line {} of the input: {}", frame + 1, error.what()));
+    }
+    PrintState(frame, tracker->state());
+  }
+}
+
+}  // namespace physpring

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring track --stream: frames on standard input, states on standard output, a line of JSON
+// each.
+#ifndef PHYSPRING_CLI_TRACK_STREAM_H_
+#define PHYSPRING_CLI_TRACK_STREAM_H_
+
+#include <string>
+
+namespace physpring {
+
+struct StreamOptions {
+  double fps = 0;       // 0: that of the twin
+  double noise = 1e-3;  // m
+};
+
+// Follows the object of the twin in that file until the input ends. Throws Error, one line that
+// says which one, where a line is not what docs/track.md says.
+void TrackStream(const std::string& twin, const StreamOptions& options);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_CLI_TRACK_STREAM_H_
