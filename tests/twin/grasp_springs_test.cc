@@ -119,7 +119,7 @@ TEST_F(CaughtRope, HasTheRightGradient) {
         adjoint.gradient.stiffness[e], 1e-5 * system_.stiffness[e],
         [e](SpringMassSystem& s) -> double& { return s.stiffness[e]; }, "stiffness " + name);
     check(
-        adjoint.gradient.dashpot[e], 1e-4 * system_.dashpot[e],
+        adjoint.gradient.dashpot[e], 1e-5 * system_.dashpot[e],
         [e](SpringMassSystem& s) -> double& { return s.dashpot[e]; }, "dashpot " + name);
     check(
         adjoint.gradient.rest_length[e], 1e-7 * system_.rest_length[e],
