@@ -11,6 +11,7 @@
 #include "cli/output_files.h"
 #include "cli/warnings.h"
 #include "registration/register_clouds.h"
+#include "registration/register_markers.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -19,6 +20,7 @@ namespace {
 struct RegisterArguments {
   std::string recording, like, output;
   int points = 0;
+  bool markers = false, rod = false;
   bool force = false;
 };
 
@@ -33,6 +35,12 @@ void WarnOfDoubts(const RegisteredClouds& registered) {
   }
 }
 
+RegisteredClouds Register(const RegisterArguments& arguments, const Recording& clouds) {
+  if (arguments.markers) return RegisterMarkers(clouds, arguments.rod);
+  if (arguments.like.empty()) return RegisterClouds(clouds, arguments.points);
+  return RegisterCloudsLike(clouds, ReadRecording(arguments.like));
+}
+
 void Run(const RegisterArguments& arguments) {
   ExpectOutputs({arguments.output}, {arguments.recording, arguments.like});
   ExpectNew(arguments.output, arguments.force);
@@ -42,9 +50,7 @@ void Run(const RegisterArguments& arguments) {
                 ": has 'points' already; without them, points are made of its clouds");
   }
   PrintRemarks({&clouds, 1});
-  const RegisteredClouds registered =
-      arguments.like.empty() ? RegisterClouds(clouds, arguments.points)
-                             : RegisterCloudsLike(clouds, ReadRecording(arguments.like));
+  const RegisteredClouds registered = Register(arguments, clouds);
   WriteRecording(registered.recording, arguments.output);
   fmt::print("{}: {} points, {:.1f} mm apart; clouds tell of {:.0f} % of them in a frame\n",
              arguments.output, registered.recording.point_count(), 1e3 * registered.fit.spacing,
@@ -78,6 +84,12 @@ void AddRegisterCommand(CLI::App& app) {
                    "take the points of this recording of the same object")
       ->excludes("--points")
       ->type_name("REC.npz");
+  CLI::Option* markers = command->add_flag(
+      "--markers", arguments->markers,
+      "the points are markers, the same ones in each frame in any order; some may be hidden");
+  markers->excludes("--points")->excludes("--like");
+  command->add_flag("--rod", arguments->rod, "the markers are along a rod: write their `order`")
+      ->needs(markers);
   command->add_flag("--force", arguments->force, "overwrite a file");
   command->callback([arguments] { Run(*arguments); });
 }

@@ -15,6 +15,7 @@
 #include "tracker/track_recording.h"
 #include "twin/clock_offset.h"
 #include "twin/npz_fields.h"
+#include "twin/predict.h"
 #include "twin/regrasp.h"
 
 namespace physpring {

@@ -154,7 +154,7 @@ LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
   plan.flexes = options.flexes;
   PlanEffects(&plan);
   if (!twin.late.empty() && plan.system().controllers > 0 && plan.springs != SpringKind::kPlugin) {
-    plan.differences.push_back(
+    plan.differences.emplace_back(
         "grasps that begin late hold from the start: only the plugin opens "
         "them");
   }

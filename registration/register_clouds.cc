@@ -29,17 +29,6 @@ constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that
 constexpr double kFarFromRough =
     1.5;  // spacings: what is carried back farther away is not the body
 
-void ExpectBody(const Recording& clouds) {
-  if (clouds.surface.empty()) {
-    throw Error(fmt::format("recording {}: has no clouds ('surface')", clouds.name));
-  }
-  const Eigen::Index seen = PointsOf(clouds.surface[0]).cols();
-  if (seen >= kFewestSeen) return;
-  throw Error(
-      fmt::format("recording {}: array 'surface' has {} points in frame 0, expected {} or more",
-                  clouds.name, seen, kFewestSeen));
-}
-
 // In the middle of all frames.
 int PointsOfACloud(const std::vector<Points>& clouds) {
   std::vector<int> counts;
@@ -114,15 +103,29 @@ RegisteredClouds Register(const Recording& recording) {
 
 }  // namespace
 
+void ExpectSeen(const Recording& clouds, int fewest) {
+  if (clouds.surface.empty()) {
+    throw Error(fmt::format("recording {}: has no clouds ('surface')", clouds.name));
+  }
+  const Eigen::Index seen = PointsOf(clouds.surface[0]).cols();
+  if (seen >= fewest) return;
+  throw Error(
+      fmt::format("recording {}: array 'surface' has {} points in frame 0, expected {} or more",
+                  clouds.name, seen, fewest));
+}
+
+void ExpectEnough(const Recording& clouds, int points, int fewest) {
+  if (points >= fewest) return;
+  throw Error(fmt::format("recording {}: {} points make no body, expected {} or more", clouds.name,
+                          points, fewest));
+}
+
 RegisteredClouds RegisterClouds(const Recording& clouds, int points) {
-  ExpectBody(clouds);
+  ExpectSeen(clouds, kFewestSeen);
   if (points == 0) {
     points = std::min(kMostPoints, static_cast<int>(kPerSeen * PointsOfACloud(clouds.surface)));
   }
-  if (points < kFewestSeen) {
-    throw Error(fmt::format("recording {}: {} points make no body, expected {} or more",
-                            clouds.name, points, kFewestSeen));
-  }
+  ExpectEnough(clouds, points, kFewestSeen);
   const int few = std::max(kFewestSeen, static_cast<int>(kRoughPart * points));
   const Points first = PointsOf(clouds.surface[0]), kept = WithoutOutliers(first);
   const Recording rough = AtRestInFrame0(clouds, SpreadParticles(kept, few));
@@ -133,7 +136,7 @@ RegisteredClouds RegisterClouds(const Recording& clouds, int points) {
 }
 
 RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known) {
-  ExpectBody(clouds);
+  ExpectSeen(clouds, kFewestSeen);
   if (known.interior_count() > 0) {
     throw Error(fmt::format(
         "recording {}: has interior particles; expected a recording without them", known.name));

@@ -22,6 +22,11 @@ struct RegisteredClouds {
   int outliers = 0;   // points of the first cloud that were left out
 };
 
+// Throw Error unless frame 0 of the clouds shows as many points as `fewest`, or `points` are so
+// many.
+void ExpectSeen(const Recording& clouds, int fewest);
+void ExpectEnough(const Recording& clouds, int points, int fewest);
+
 // `clouds`: a recording with `surface`. `points`: how many to make; 0: half as many again as a
 // cloud has, 400 at most. Throws Error where frame 0 shows too little for a body, and where the
 // body diverges.
