@@ -56,23 +56,61 @@ std::vector<Eigen::Index> Assign(const Eigen::MatrixXd& cost) {
   return column_of;
 }
 
-}  // namespace
+// Markers and points that are near each other, directly or over others.
+struct Group {
+  std::vector<Eigen::Index> markers, points;
+};
 
-std::vector<int> NameMarkers(const Points& markers, const Points& cloud, double reach) {
-  const Eigen::Index count = markers.cols(), points = cloud.cols();
+// Those of a marker, none of which was reached before.
+Group GroupOf(Eigen::Index marker, const Points& markers, const Points& cloud, double reach,
+              std::vector<bool>* marker_reached, std::vector<bool>* point_reached) {
+  Group group{{marker}, {}};
+  (*marker_reached)[marker] = true;
+  for (std::size_t next = 0; next < group.markers.size(); ++next) {
+    for (Eigen::Index j = 0; j < cloud.cols(); ++j) {
+      const bool is_near = (cloud.col(j) - markers.col(group.markers[next])).norm() < reach;
+      if ((*point_reached)[j] || !is_near) continue;
+      (*point_reached)[j] = true;
+      group.points.push_back(j);
+      for (Eigen::Index i = 0; i < markers.cols(); ++i) {
+        if ((*marker_reached)[i] || (markers.col(i) - cloud.col(j)).norm() >= reach) continue;
+        (*marker_reached)[i] = true;
+        group.markers.push_back(i);
+      }
+    }
+  }
+  return group;
+}
+
+void NameGroup(const Group& group, const Points& markers, const Points& cloud, double reach,
+               std::vector<int>* named) {
+  const auto count = static_cast<Eigen::Index>(group.markers.size());
+  const auto points = static_cast<Eigen::Index>(group.points.size());
   // behind the points a place for each marker that is none of them
   Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(count, points + count, reach * reach);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < points; ++j) {
-      cost(i, j) = (markers.col(i) - cloud.col(j)).squaredNorm();
+      cost(i, j) = (markers.col(group.markers[i]) - cloud.col(group.points[j])).squaredNorm();
     }
   }
-  std::vector<int> named;
   const std::vector<Eigen::Index> column_of = Assign(cost);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index column = column_of[static_cast<std::size_t>(i)];
-    const bool is_near = column < points && cost(i, column) < reach * reach;
-    named.push_back(is_near ? static_cast<int>(column) : -1);
+    const Eigen::Index column = column_of[i];
+    if (column >= points || cost(i, column) >= reach * reach) continue;
+    (*named)[group.markers[i]] = static_cast<int>(group.points[column]);
+  }
+}
+
+}  // namespace
+
+std::vector<int> NameMarkers(const Points& markers, const Points& cloud, double reach) {
+  std::vector<int> named(static_cast<std::size_t>(markers.cols()), -1);
+  std::vector<bool> marker_reached(named.size(), false);
+  std::vector<bool> point_reached(static_cast<std::size_t>(cloud.cols()), false);
+  for (Eigen::Index i = 0; i < markers.cols(); ++i) {
+    if (marker_reached[i]) continue;
+    const Group group = GroupOf(i, markers, cloud, reach, &marker_reached, &point_reached);
+    NameGroup(group, markers, cloud, reach, &named);
   }
   return named;
 }

@@ -141,21 +141,27 @@ void AddGathered(const Followed& followed, double fps, std::vector<Eigen::Vector
       carried.push_back(*back.Move(point));
     }
   }
-  for (;;) {
-    std::vector<std::size_t> most;
+  while (!carried.empty()) {
+    Points points(3, static_cast<Eigen::Index>(carried.size()));
+    for (std::size_t j = 0; j < carried.size(); ++j)
+      points.col(static_cast<Eigen::Index>(j)) = carried[j];
+    const NeighbourSearch search(points);
+    std::vector<Neighbour> most;
     for (const Eigen::Vector3d& centre : carried) {
-      std::vector<std::size_t> members;
-      for (std::size_t j = 0; j < carried.size(); ++j) {
-        if ((carried[j] - centre).norm() < near) members.push_back(j);
-      }
+      std::vector<Neighbour> members = search.Within(centre, near);
       if (members.size() > most.size()) most = std::move(members);
     }
     if (static_cast<double>(most.size()) < kOftenEnough * static_cast<double>(frames - 1)) return;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (std::size_t j : most) mean += carried[j] / static_cast<double>(most.size());
+    std::vector<bool> is_taken(carried.size(), false);
+    for (const Neighbour& one : most) {
+      mean += points.col(one.index) / static_cast<double>(most.size());
+      is_taken[static_cast<std::size_t>(one.index)] = true;
+    }
     markers->push_back(mean);
-    for (auto j = most.rbegin(); j != most.rend(); ++j) {
-      carried.erase(carried.begin() + static_cast<std::ptrdiff_t>(*j));
+    carried.clear();
+    for (std::size_t j = 0; j < is_taken.size(); ++j) {
+      if (!is_taken[j]) carried.emplace_back(points.col(static_cast<Eigen::Index>(j)));
     }
   }
 }
