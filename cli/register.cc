@@ -35,10 +35,38 @@ void WarnOfDoubts(const RegisteredClouds& registered) {
   }
 }
 
-RegisteredClouds Register(const RegisterArguments& arguments, const Recording& clouds) {
-  if (arguments.markers) return RegisterMarkers(clouds, arguments.rod);
-  if (arguments.like.empty()) return RegisterClouds(clouds, arguments.points);
-  return RegisterCloudsLike(clouds, ReadRecording(arguments.like));
+void WarnOfDoubts(const RegisteredMarkers& registered) {
+  constexpr double kConfused = 0.05, kOthers = 0.5;
+  std::vector<std::string> warnings;
+  if (registered.lost_from) {
+    warnings.push_back(
+        fmt::format("they are lost: from frame {} on hardly any marker is found; do they move "
+                    "further than {:.0f} "
+                    "mm in a frame, or are all hidden for a while?",
+                    *registered.lost_from, 500 * registered.spacing));
+  } else if (registered.confused > kConfused) {
+    warnings.push_back(fmt::format(
+        "{:.0f} % of the markers are not found in frames that have points without a name instead: "
+        "names may be wrong",
+        100 * registered.confused));
+  }
+  if (registered.without_name > kOthers) {
+    warnings.push_back(
+        fmt::format("{:.2g} points of a frame, on the average, are no marker that is followed",
+                    registered.without_name));
+  }
+  PrintWarnings(warnings);
+}
+
+void RunMarkers(const RegisterArguments& arguments, const Recording& clouds) {
+  const RegisteredMarkers registered = RegisterMarkers(clouds, arguments.rod);
+  WriteRecording(registered.recording, arguments.output);
+  fmt::print(
+      "{}: {} markers, {:.1f} mm apart; {:.0f} % of them are found in a frame, {:.1f} mm from "
+      "where they are expected\n",
+      arguments.output, registered.recording.point_count(), 1e3 * registered.spacing,
+      100 * registered.seen, 1e3 * registered.distance);
+  WarnOfDoubts(registered);
 }
 
 void Run(const RegisterArguments& arguments) {
@@ -50,7 +78,10 @@ void Run(const RegisterArguments& arguments) {
                 ": has 'points' already; without them, points are made of its clouds");
   }
   PrintRemarks({&clouds, 1});
-  const RegisteredClouds registered = Register(arguments, clouds);
+  if (arguments.markers) return RunMarkers(arguments, clouds);
+  const RegisteredClouds registered =
+      arguments.like.empty() ? RegisterClouds(clouds, arguments.points)
+                             : RegisterCloudsLike(clouds, ReadRecording(arguments.like));
   WriteRecording(registered.recording, arguments.output);
   fmt::print("{}: {} points, {:.1f} mm apart; clouds tell of {:.0f} % of them in a frame\n",
              arguments.output, registered.recording.point_count(), 1e3 * registered.fit.spacing,

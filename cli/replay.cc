@@ -25,6 +25,8 @@
 #include "twin/clock_offset.h"
 #include "twin/error.h"
 #include "twin/evaluate.h"
+#include "twin/predict.h"
+#include "twin/regrasp.h"
 
 namespace physpring {
 namespace {
@@ -143,12 +145,27 @@ void UseClock(const ReplayArguments& arguments, Recording* recording) {
                                 "nobody knows how far it is off");
 }
 
+// The scene holds the object where the training did.
+void WarnOfMovedGrasps(const ReplayArguments& arguments, Recording* recording) {
+  if (arguments.twin.empty()) return;
+  const Twin twin = ReadTwin(arguments.twin);
+  ExpectSameObject(twin, *recording);
+  if (twin.TrainingOn(recording->hash)) return;
+  for (const MovedGrasp& moved : FindMovedGrasps(twin.levels[0].system.position, *recording)) {
+    recording->warnings.push_back(fmt::format(
+        "recording {}: controller {} holds the object {:.3g} m from where it held it in the "
+        "training, and as the scene does",
+        recording->name, moved.controller, moved.distance));
+  }
+}
+
 void Run(const ReplayArguments& arguments) {
   const std::string missing = WhyNoPlugin();
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
   Recording recording = ReadRecording(arguments.recording);
   UseClock(arguments, &recording);
+  WarnOfMovedGrasps(arguments, &recording);
   PrintRemarks({&recording, 1});
   ControllerReplay replay;
   try {

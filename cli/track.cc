@@ -101,15 +101,15 @@ void AddTrackCommand(CLI::App& app) {
   CLI::Option* output = command->add_option("-o,--output", arguments->output, "states to write")
                             ->check(FileNameWith(".npz"))
                             ->type_name("STATES.npz");
-  command->add_flag("--cloud", arguments->options.cloud,
-                    "follow the recording's `surface`, points without names, and judge by its "
-                    "points");
-  command
-      ->add_option("--hide", arguments->options.hide,
-                   "hide this part of the points, and judge by them")
-      ->check(NumberBetween(0, 0.95))
-      ->excludes("--cloud")
-      ->type_name("PART");
+  CLI::Option* cloud = command->add_flag("--cloud", arguments->options.cloud,
+                                         "follow the recording's `surface`, points without names, "
+                                         "and judge by its points");
+  CLI::Option* hide = command
+                          ->add_option("--hide", arguments->options.hide,
+                                       "hide this part of the points, and judge by them")
+                          ->check(NumberBetween(0, 0.95))
+                          ->excludes("--cloud")
+                          ->type_name("PART");
   AddSeed(command, &arguments->options.seed, "of the points that are hidden");
   command->add_flag("--force", arguments->force, "overwrite a file");
   CLI::Option* stream =
@@ -118,7 +118,9 @@ void AddTrackCommand(CLI::App& app) {
                      "instead of a recording: frames on standard input, states on standard output, "
                      "a line of JSON each (docs/track.md)")
           ->excludes(recording)
-          ->excludes(output);
+          ->excludes(output)
+          ->excludes(cloud)
+          ->excludes(hide);
   command->add_option("--fps", arguments->stream_options.fps, "of the stream; default: the twin's")
       ->check(NumberBetween(0.1, 1e5))
       ->needs(stream)

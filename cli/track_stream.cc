@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "cli/checkpoint.h"
 #include "tracker/live_tracker.h"
@@ -19,6 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kFar = 1000;  // m
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // [[x, y, z], null, ...] as 3 x any number; null: NaN.
@@ -36,7 +38,12 @@ Points PointsOf(const Json& frame, const char* key, bool may_be_unseen) {
           fmt::format("'{}' [{}] is not [x, y, z]{}", key, i, may_be_unseen ? " or null" : ""));
     }
     for (int j = 0; j < 3; ++j) {
-      points(j, static_cast<Eigen::Index>(i)) = is_point ? point[j].get<double>() : kNan;
+      const double coordinate = is_point ? point[j].get<double>() : kNan;
+      if (std::abs(coordinate) > kFar) {
+        throw Error(fmt::format("'{}' [{}] is {:.3g} m away, expected at most {} m", key, i,
+                                std::abs(coordinate), kFar));
+      }
+      points(j, static_cast<Eigen::Index>(i)) = coordinate;
     }
   }
   return points;
@@ -44,13 +51,13 @@ Points PointsOf(const Json& frame, const char* key, bool may_be_unseen) {
 
 LiveFrame ParseFrame(const std::string& line) {
   const Json json = Json::parse(line, nullptr, false);
-  if (!json.is_object()) throw Error("is not an object of JSON");
+  if (!json.is_object()) throw Error("is not an object of JSON (which has null, not NaN)");
   for (const auto& item : json.items()) {
     if (item.key() != "points" && item.key() != "cloud" && item.key() != "controllers") {
       throw Error(fmt::format("'{}' is not 'points', 'cloud' or 'controllers'", item.key()));
     }
   }
-  return {{PointsOf(json, "points", true), PointsOf(json, "cloud", false)},
+  return {{PointsOf(json, "points", true), PointsOf(json, "cloud", true)},
           PointsOf(json, "controllers", false)};
 }
 
@@ -82,10 +89,12 @@ void TrackStream(const std::string& twin_path, const StreamOptions& options) {
   WarnIfUnfinished(twin, twin_path);
   const double fps = options.fps > 0 ? options.fps : twin.fps;
   std::optional<LiveTracker> tracker;
-  std::string line;
-  for (int frame = 0; std::getline(std::cin, line); ++frame) {
+  constexpr std::streamsize kLongest = 4 << 20;  // of a line
+  std::vector<char> line(kLongest);
+  for (int frame = 0; std::cin.getline(line.data(), kLongest) || std::cin.gcount() > 0; ++frame) {
     try {
-      const LiveFrame measured = ParseFrame(line);
+      if (!std::cin) throw Error("is longer than 4 MiB");
+      const LiveFrame measured = ParseFrame(line.data());
       if (tracker) {
         tracker->Advance(measured);
       } else {

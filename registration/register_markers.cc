@@ -10,6 +10,7 @@
 #include "registration/cloud_particles.h"
 #include "registration/followed_body.h"
 #include "registration/name_markers.h"
+#include "registration/register_clouds.h"
 #include "registration/rod_order.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
@@ -83,7 +84,7 @@ class Naming {
     const LocalMotion motion(last_, named, kNearest);
     for (Eigen::Index i = 0; i < named.cols(); ++i) {
       if (named.col(i).allFinite()) continue;
-      position.col(i) = motion.Move(last_.col(i)).value_or(last_.col(i) + step_.col(i));
+      position.col(i) = motion.Move(last_.col(i)).value_or(last_.col(i));
     }
     step_ = position - last_;
     last_ = position;
@@ -113,6 +114,35 @@ Followed Follow(const Recording& clouds, const Points& markers) {
   }
   followed.distance = naming.distance();
   return followed;
+}
+
+// How many markers are found in a frame.
+double FoundIn(const Followed& followed, std::size_t frame) {
+  return static_cast<double>(followed.recording.points[frame].row(0).array().isFinite().count());
+}
+
+// RegisteredMarkers::lost_from; a gap at the end is none.
+std::optional<int> LostFrom(const Followed& followed) {
+  constexpr double kGap = 0.1;  // of the frames
+  const std::size_t frames = followed.position.size();
+  const double half = kFewestNamed * static_cast<double>(followed.position[0].cols());
+  std::size_t last = frames - 1;
+  while (last > 0 && FoundIn(followed, last) < half) --last;
+  if (static_cast<double>(frames - 1 - last) < kGap * static_cast<double>(frames)) return {};
+  return static_cast<int>(last) + 1;
+}
+
+// Points of which no two are at one place.
+Points Distinct(const Points& points) {
+  constexpr double kSame = 1e-6;  // m
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](Eigen::Index j) {
+      return (points.col(i) - points.col(j)).norm() < kSame;
+    });
+    if (is_new) kept.push_back(i);
+  }
+  return points(Eigen::all, kept);
 }
 
 // The markers of frame 0 that are seen again and again.
@@ -202,33 +232,36 @@ std::vector<Eigen::Index> AlongRod(const Eigen::VectorXd& order, Eigen::Index ma
 
 }  // namespace
 
-RegisteredClouds RegisterMarkers(const Recording& clouds, bool rod) {
+RegisteredMarkers RegisterMarkers(const Recording& clouds, bool rod) {
   ExpectSeen(clouds, kFewest);
-  Points markers = PointsOf(clouds.surface[0]);
+  Points markers = Distinct(PointsOf(clouds.surface[0]));
+  ExpectEnough(clouds, static_cast<int>(markers.cols()), kFewest);
   Followed followed = Follow(clouds, markers);
-  for (int pass = 1; pass < kMostPasses; ++pass) {
+  for (int pass = 1; pass < kMostPasses && !LostFrom(followed); ++pass) {
     const Points found = MarkersOf(followed, clouds.fps);
     ExpectEnough(clouds, static_cast<int>(found.cols()), kFewest);
     if (found.cols() == markers.cols() && found == markers) break;
     markers = found;
     followed = Follow(clouds, markers);
   }
-
-  if (rod) {
+  if (rod && !LostFrom(followed)) {
     markers = markers(Eigen::all, AlongRod(OrderOf(followed.recording), markers.cols())).eval();
     followed = Follow(clouds, markers);
     followed.recording.order = OrderOf(followed.recording);
   }
-  RegisteredClouds registered{std::move(followed.recording)};
-  const Recording& recording = registered.recording;
-  double seen = 0;
-  for (std::size_t t = 1; t < recording.points.size(); ++t) {
-    seen += static_cast<double>(recording.points[t].row(0).array().isFinite().count());
+  RegisteredMarkers registered;
+  registered.distance = followed.distance;
+  registered.spacing = MedianSpacing(markers);
+  registered.lost_from = LostFrom(followed);
+  const double frames = clouds.frame_count() - 1, count = static_cast<double>(markers.cols());
+  for (std::size_t t = 1; t < followed.position.size(); ++t) {
+    const double found = FoundIn(followed, t);
+    const double others = static_cast<double>(followed.without_name[t].cols());
+    registered.seen += found / (count * frames);
+    registered.without_name += others / frames;
+    registered.confused += std::min(others, count - found) / (count * frames);
   }
-  registered.seen =
-      seen / (static_cast<double>(markers.cols()) * static_cast<double>(clouds.frame_count() - 1));
-  registered.fit = {followed.distance, MedianSpacing(markers)};
-  registered.lost = registered.seen < kFewestNamed;
+  registered.recording = std::move(followed.recording);
   return registered;
 }
 

@@ -74,7 +74,8 @@ void LiveTracker::Advance(const LiveFrame& frame) {
   FrameInput input = RecordedInput(lately_, last, delay_);
   input.time = frame_++ / fps_;
   bank_.Advance(input, frame.measured);
-  if (!state().position().allFinite()) throw Error("the tracked motion diverges");
+  if (!state().position().allFinite() || !state().velocity().allFinite())
+    throw Error("the tracked motion diverges");
 }
 
 }  // namespace physpring

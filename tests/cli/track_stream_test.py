@@ -82,6 +82,9 @@ class Stream(unittest.TestCase):
     def test_refuses_what_is_no_frame(self):
         first = json.dumps(self.frame(0))
         self.assertIn("line 1 of the input: is not an object of JSON", self.refused("points"))
+        far = json.dumps({**self.frame(0), "points": [[1e300, 0, 0]] * 32})
+        self.assertIn("line 2 of the input: 'points' [0] is 1e+300 m away", self.refused(first, far))
+        self.assertIn("line 1 of the input: is longer than 4 MiB", self.refused("a" * (5 << 20)))
         self.assertIn("line 2 of the input: 'colour' is not", self.refused(first, '{"colour": 1}'))
         self.assertIn("line 1 of the input: has 0 controllers, expected 2", self.refused("{}"))
         bad = json.dumps({**self.frame(0), "points": [[0, 0]]})

@@ -69,9 +69,10 @@ Recording Shuffled(const Recording& truth, int seed) {
 TEST(RegisterMarkers, NamesThemAllAlongTheRod) {
   const Recording truth = SwungRod();
   for (int seed : {1, 2, 3}) {
-    const RegisteredClouds registered = RegisterMarkers(Shuffled(truth, seed), true);
+    const RegisteredMarkers registered = RegisterMarkers(Shuffled(truth, seed), true);
     const Recording& recording = registered.recording;
-    EXPECT_FALSE(registered.lost);
+    EXPECT_FALSE(registered.lost_from.has_value());
+    EXPECT_LT(registered.confused, 0.03);
     ASSERT_EQ(recording.point_count(), kMarkers);
     int seen = 0;
     for (int t = 1; t < kFrames; ++t) {
@@ -89,6 +90,31 @@ TEST(RegisterMarkers, NamesThemAllAlongTheRod) {
     for (int i = 0; i < kMarkers; ++i) EXPECT_NEAR(recording.order[i], kSpacing * (i + 1), 5e-3);
     EXPECT_NEAR(recording.order[kMarkers + 1], kSpacing * (kMarkers + 1), 5e-3);
   }
+}
+
+// All at once further than half the distance between markers.
+TEST(RegisterMarkers, TellsOfAJump) {
+  Recording jump = SwungRod();
+  for (int t = kFrames / 2; t < kFrames; ++t) {
+    jump.points[t].row(2).array() += 2 * kSpacing;
+    jump.controllers[t].row(2).array() += 2 * kSpacing;
+  }
+  const RegisteredMarkers registered = RegisterMarkers(Shuffled(jump, 1), true);
+  EXPECT_EQ(registered.lost_from, kFrames / 2);
+  jump = SwungRod();
+  for (int t = kFrames / 2; t < kFrames; ++t) {  // each to where another one was
+    for (int i = kMarkers - 1; i >= 2; --i) jump.points[t].col(i) = jump.points[t].col(i - 2);
+    jump.points[t].leftCols(2).row(2).array() += 3 * kSpacing;
+  }
+  EXPECT_GT(RegisterMarkers(Shuffled(jump, 1), false).confused, 0.05);
+}
+
+TEST(RegisterMarkers, TakesUpAfterAGap) {
+  Recording clouds = Shuffled(SwungRod(), 1);
+  for (int t = 50; t < 54; ++t) clouds.surface[t].setConstant(std::nan(""));
+  const RegisteredMarkers registered = RegisterMarkers(clouds, true);
+  EXPECT_FALSE(registered.lost_from.has_value());
+  EXPECT_EQ(registered.recording.point_count(), kMarkers);
 }
 
 TEST(RegisterMarkers, RefusesTooFew) {
