@@ -137,8 +137,8 @@ std::vector<ExportedObject::GraspSpring> ExportedObject::GraspSprings() const {
     const auto [node, other] = std::minmax(a, b);
     const int controller = other - node_count();
     if (controller < 0) continue;
-    const auto arm = ConstVector(data->xpos + 3 * controllers_[controller]) -
-                     ConstVector(data->xpos + 3 * nodes_[node]);
+    const Eigen::Vector3d arm = ConstVector(data->xpos + 3 * controllers_[controller]) -
+                                ConstVector(data->xpos + 3 * nodes_[node]);
     springs.push_back({node, controller, arm.norm()});
   }
   return springs;
@@ -147,7 +147,8 @@ std::vector<ExportedObject::GraspSpring> ExportedObject::GraspSprings() const {
 void ExportedObject::SetGrasps(const ControllerMask& released, const Attachment& taken,
                                mjData* data) const {
   const auto state = StateOf(data);
-  if (!state) throw Error("has springs of MuJoCo's own, which never let go: export it with --springs plugin");
+  if (!state)
+    throw Error("has springs of MuJoCo's own, which never let go: export it with --springs plugin");
   for (int c = 0; c < controller_count(); ++c) {
     state->released[c] = Has(released, c) ? 1 : 0;
     if (Has(taken.attached, c)) state->were_released[c] = 0;  // what it holds is said here
