@@ -20,6 +20,7 @@ void AddMergeCommand(CLI::App& app);
 void AddInfoCommand(CLI::App& app);
 void AddInteriorCommand(CLI::App& app);
 void AddRegisterCommand(CLI::App& app);
+void AddSplitCommand(CLI::App& app);
 void AddDoctorCommand(CLI::App& app);
 
 }  // namespace physpring

@@ -25,6 +25,12 @@ struct InteriorArguments {
 
 // Nobody knows the rest positions or arc lengths of new particles.
 void ExpectPlain(const Recording& recording, const std::string& path) {
+  if (recording.object.size() > 0) {
+    throw Error(
+        fmt::format("{}: shows {} objects, but a mesh is of one; `physpring split` makes a "
+                    "recording of each",
+                    path, recording.object.maxCoeff() + 1));
+  }
   const char* array = recording.interior_count() > 0 ? "interior"
                       : recording.rest_given         ? "rest"
                       : recording.order.size() > 0   ? "order"

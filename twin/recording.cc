@@ -27,11 +27,11 @@ namespace physpring {
 namespace {
 
 constexpr double kStrongestGravity = 1000;  // m/s^2
-constexpr std::array<std::string_view, 17> kArrays{
+constexpr std::array<std::string_view, 18> kArrays{
     "points",  "controllers", "fps",          "mass",       "gravity",
     "ground",  "interior",    "rest",         "velocity",   "order",
     "surface", "track",       "train_frames", "timestamps", "controller_timestamps",
-    "force",   "held"};
+    "force",   "held",        "object"};
 constexpr double kSmallestDistance = 1e-7;            // m, between two particles
 constexpr double kAssumedMass = 0.1;                  // kg
 constexpr double kLeastMass = 1e-9, kMostMass = 1e6;  // kg
@@ -68,7 +68,7 @@ void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording
 
 // Whether nothing is said of points that are followed.
 bool HasCloudsAlone(const NpzFields& fields) {
-  constexpr std::array kOfPoints{"points", "interior", "rest", "velocity", "order"};
+  constexpr std::array kOfPoints{"points", "interior", "rest", "velocity", "order", "object"};
   return fields.Has("surface") && std::none_of(kOfPoints.begin(), kOfPoints.end(),
                                                [&](const char* name) { return fields.Has(name); });
 }
@@ -148,6 +148,10 @@ void ReadParticles(NpzFields& fields, Recording& recording) {
   recording.velocity = Points::Zero(3, recording.particle_count());
   if (fields.Has("velocity")) recording.velocity = fields.Positions("velocity", "N+M");
   if (fields.Has("order")) recording.order = fields.Vector("order", "N+M+C");
+  if (fields.Has("object")) {
+    const std::vector<int> declared = fields.Ints("object", {"N+M"});
+    recording.object = Eigen::VectorXi::Map(declared.data(), std::ssize(declared));
+  }
   recording.rest_given = fields.Has("rest");
   if (recording.rest_given) recording.rest = fields.Positions("rest", "N+M+C");
 }
@@ -225,11 +229,12 @@ void SetVelocity(const std::string& path, Recording& recording) {
 void Check(const std::string& path, bool velocity_given, Recording& recording) {
   const std::string left_out = LeaveOutOutliers(path, &recording);
   if (!left_out.empty()) recording.warnings.push_back(left_out);
-  recording.object = FindObjects(recording);
   if (recording.object.size() > 0) {
+    recording.object = DeclaredObjects(recording, recording.object);
+  } else if ((recording.object = FindObjects(recording)).size() > 0) {
     recording.warnings.push_back(
-        fmt::format("{}: shows {} objects that part: no spring joins them; a recording of each "
-                    "makes better twins",
+        fmt::format("{}: shows {} objects that part: no spring joins them; the array 'object' "
+                    "declares them",
                     path, recording.object.maxCoeff() + 1));
   }
   if (!velocity_given) SetVelocity(path, recording);

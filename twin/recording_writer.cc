@@ -58,6 +58,10 @@ Npz StoreRecording(const Recording& recording) {
   if (recording.order.size() > 0) {
     arrays["order"] = NpzArray::Doubles({ExtentOf(recording.order.size())}, recording.order.data());
   }
+  if (recording.object.size() > 0) {
+    const Eigen::VectorXi declared = recording.object.head(recording.particle_count());
+    arrays["object"] = NpzArray::Ints({ExtentOf(declared.size())}, declared.data());
+  }
   if (recording.held.size() > 0) arrays["held"] = StoreHeld(recording);
   if (!recording.force.empty()) arrays["force"] = StoreNumbers(recording.force);
   if (recording.two_clocks) {

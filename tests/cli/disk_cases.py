@@ -59,6 +59,7 @@ def cases(inputs):
                           '{out}/filled.npz'], ['--force']),
         Case('register', ['register', inputs / 'clouds.npz', '--points', '12', '-o',
                           '{out}/followed.npz'], ['--force']),
+        Case('split', ['split', inputs / 'two.npz', '-o', '{out}/parts'], ['--force']),
         Case('eval', ['eval', inputs / 'small.twin.npz', inputs / 'swing.npz', '--json',
                       '{out}/eval.json', '--picture', '{out}/eval.html', '--trajectory',
                       '{out}/motion.npz']),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // For tests in Python: make_small_twin FOLDER writes a twin of two levels that was trained on the
 // motion of a body that weighs more on one side, that recording, another one to judge by, whose
-// name has letters that a page must escape, and one whose points have no names.
+// name has letters that a page must escape, one whose points have no names, and one that declares
+// two objects.
 #include <filesystem>
 
 #include "tests/support/small_twin.h"
@@ -25,6 +26,10 @@ void WriteInto(const std::filesystem::path& folder) {
   WriteRecording(RecordingOfMotion(heavy, 10), swing);
   WriteRecording(RecordingOfMotion(heavy, 12), folder / "<b>held & 'back'.npz");
   WriteRecording(CloudsOf(RecordingOfMotion(heavy, 10)), folder / "clouds.npz");
+  Recording two = RecordingOfMotion(heavy, 10);
+  two.object = Eigen::VectorXi::Zero(two.start.cols());
+  two.object.head(16).setOnes();
+  WriteRecording(two, folder / "two.npz");
   Twin twin = SmallTwin(2);
   twin.trained_on = {{"swing", ReadRecording(swing).hash, 10}};
   WriteTwin(twin, folder / "small.twin.npz");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <vector>
 
@@ -90,6 +91,19 @@ Eigen::VectorXi FindObjects(const Recording& recording) {
     object[i] = number[groups.Of(nearest)];
   }
   return object;
+}
+
+Eigen::VectorXi DeclaredObjects(const Recording& recording, const Eigen::VectorXi& declared) {
+  std::map<int, int> numbers;
+  const Eigen::Index particles = declared.size();
+  const NeighbourSearch search(Points(recording.start.leftCols(particles)));
+  Eigen::VectorXi object(recording.start.cols());
+  for (Eigen::Index i = 0; i < object.size(); ++i) {
+    const auto particle = i < particles ? i : search.Nearest(recording.start.col(i), 1)[0].index;
+    const int next = static_cast<int>(numbers.size());
+    object[i] = numbers.emplace(declared[particle], next).first->second;
+  }
+  return numbers.size() > 1 ? object : Eigen::VectorXi();
 }
 
 }  // namespace physpring

@@ -15,6 +15,10 @@ namespace physpring {
 // points count to the nearest one.
 Eigen::VectorXi FindObjects(const Recording& recording);
 
+// The same where each particle's object is declared: `declared` (N+M), any whole numbers. A
+// controller belongs to the object of the nearest particle in frame 0.
+Eigen::VectorXi DeclaredObjects(const Recording& recording, const Eigen::VectorXi& declared);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_CHECKS_OBJECTS_H_
