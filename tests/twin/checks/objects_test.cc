@@ -49,7 +49,8 @@ TEST_F(DeclaredObjectsFile, IsReadAndWritten) {
   WriteRecording(read, path_);
   EXPECT_EQ(ReadRecording(path_).object, read.object);
   arrays_["object"] = NpzArray::Ints({3}, declared.data());
-  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'object' has shape (3,), expected (N+M = 4,)");
+  EXPECT_EQ(ErrorOfChanged(),
+            path_ + ": array 'object' has the shape (3,), expected (N+M,) with N+M = 4");
 }
 
 }  // namespace
