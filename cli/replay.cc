@@ -40,9 +40,8 @@ struct ReplayArguments {
 };
 
 // The replay with progress. Throws Interrupted where a signal stops it.
-ControllerReplay Replay(const ReplayArguments& arguments, const Recording& recording) {
-  std::optional<Twin> twin;
-  if (!arguments.twin.empty()) twin = ReadTwin(arguments.twin);
+ControllerReplay Replay(const ReplayArguments& arguments, const std::optional<Twin>& twin,
+                        const Recording& recording) {
   const InterruptWatch watch;
   Progress progress(0);
   ReplayOptions options;
@@ -137,18 +136,17 @@ void WriteReport(const ReplayArguments& arguments, const Recording& recording,
 }
 
 // A scene does not say how far the clocks of a recording differ; its twin does.
-void UseClock(const ReplayArguments& arguments, Recording* recording) {
+void UseClock(const ReplayArguments& arguments, const std::optional<Twin>& twin,
+              Recording* recording) {
   if (!recording->two_clocks) return;
-  if (!arguments.twin.empty()) return UseClockOf(ReadTwin(arguments.twin), recording);
+  if (twin) return UseClockOf(*twin, recording);
   recording->warnings.push_back(arguments.recording +
                                 ": its controllers have a clock of their own, and without --twin "
                                 "nobody knows how far it is off");
 }
 
 // The scene holds the object where the training did.
-void WarnOfMovedGrasps(const ReplayArguments& arguments, Recording* recording) {
-  if (arguments.twin.empty()) return;
-  const Twin twin = ReadTwin(arguments.twin);
+void WarnOfMovedGrasps(const Twin& twin, Recording* recording) {
   ExpectSameObject(twin, *recording);
   if (twin.TrainingOn(recording->hash)) return;
   for (const MovedGrasp& moved : FindMovedGrasps(twin.levels[0].system.position, *recording)) {
@@ -164,12 +162,14 @@ void Run(const ReplayArguments& arguments) {
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});
   Recording recording = ReadRecording(arguments.recording);
-  UseClock(arguments, &recording);
-  WarnOfMovedGrasps(arguments, &recording);
+  std::optional<Twin> twin;
+  if (!arguments.twin.empty()) twin = ReadTwin(arguments.twin);
+  UseClock(arguments, twin, &recording);
+  if (twin) WarnOfMovedGrasps(*twin, &recording);
   PrintRemarks({&recording, 1});
   ControllerReplay replay;
   try {
-    replay = Replay(arguments, recording);
+    replay = Replay(arguments, twin, recording);
   } catch (const Error& error) {
     if (missing.empty()) throw;
     throw Error(fmt::format("{}; {}", error.what(), missing));

@@ -10,6 +10,7 @@
 
 #include "cli/message.h"
 #include "twin/error.h"
+#include "twin/grasps.h"
 
 namespace physpring {
 namespace {
@@ -64,7 +65,7 @@ void PrintRemarks(std::span<const Recording> recordings) {
 }
 
 void ExpectLastingGrasps(const Recording& recording) {
-  if (recording.held.size() == 0 || recording.held.all()) return;
+  if (!HasChangingGrasps(recording)) return;
   throw Error(fmt::format(
       "recording {}: has grasps that begin or end ('held'), which cannot be diagnosed yet",
       recording.name));

@@ -172,6 +172,7 @@ void Springs::TakeHold(const ControllerMask& attached) {
 }
 
 void Springs::ReadGrasps(const PluginState& plugin_state) {
+  if (ways_.empty()) return;
   const SpringMassSystem& system = springs_->step.effects().changed().system;
   const GraspSprings<double>& grasps = springs_->grasps;
   ControllerMask released, attached;

@@ -46,6 +46,12 @@ Recording WithParticles(const Recording& clouds, const Points& start, const Poin
   return recording;
 }
 
+Recording AtRestInFrame0(const Recording& clouds, const Points& start) {
+  Points rest(3, start.cols() + clouds.controller_count());
+  rest << start, clouds.controllers[0];
+  return WithParticles(clouds, start, rest);
+}
+
 double MatchWidth(const Points& start) {
   const double size = (start.rowwise().maxCoeff() - start.rowwise().minCoeff()).norm();
   return std::max(0.4 * MedianSpacing(start), size / 200);

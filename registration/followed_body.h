@@ -15,6 +15,9 @@ namespace physpring {
 // 3 x particles, m. `rest`: stress-free positions, 3 x (particles + controllers), m.
 Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest);
 
+// The same where that is the stress-free shape.
+Recording AtRestInFrame0(const Recording& clouds, const Points& start);
+
 // How near a particle a point of a cloud is its own, m: 0.4 times the particles' distance, and not
 // less than a two-hundredth of the body's size, since clouds have noise.
 double MatchWidth(const Points& start);

@@ -38,12 +38,6 @@ int PointsOfACloud(const std::vector<Points>& clouds) {
   return *middle;
 }
 
-Recording AtRestInFrame0(const Recording& clouds, const Points& start) {
-  Points rest(3, start.cols() + clouds.controller_count());
-  rest << start, clouds.controllers[0];
-  return WithParticles(clouds, start, rest);
-}
-
 // The points of a cloud where they were in frame 0, if they moved along with the particles that are
 // nearest to them now.
 void CarryBack(const Points& cloud, const Points& now, const Points& start,

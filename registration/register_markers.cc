@@ -97,14 +97,8 @@ class Naming {
   Points last_, step_;
 };
 
-Recording AtStart(const Recording& clouds, const Points& markers) {
-  Points rest(3, markers.cols() + clouds.controller_count());
-  rest << markers, clouds.controllers[0];
-  return WithParticles(clouds, markers, rest);
-}
-
 Followed Follow(const Recording& clouds, const Points& markers) {
-  Followed followed{AtStart(clouds, markers), {markers}, {Points(3, 0)}};
+  Followed followed{AtRestInFrame0(clouds, markers), {markers}, {Points(3, 0)}};
   Naming naming(markers);
   for (int t = 1; t < clouds.frame_count(); ++t) {
     const auto at = static_cast<std::size_t>(t);

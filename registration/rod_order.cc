@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "twin/checks/motion_scale.h"
 #include "twin/error.h"
 
 namespace physpring {
@@ -28,9 +29,7 @@ Eigen::MatrixXd FarthestApart(const std::vector<Points>& frames) {
       }
       farthest(i, j) = farthest(j, i) = std::numeric_limits<double>::infinity();
       if (distances.empty()) continue;
-      const auto rank = static_cast<std::ptrdiff_t>(kQuantile * (distances.size() - 1));
-      std::nth_element(distances.begin(), distances.begin() + rank, distances.end());
-      farthest(i, j) = farthest(j, i) = distances[static_cast<std::size_t>(rank)];
+      farthest(i, j) = farthest(j, i) = Quantile(kQuantile, std::move(distances));
     }
   }
   return farthest;

@@ -8,6 +8,7 @@
 
 #include "tracker/track_recording.h"
 #include "twin/error.h"
+#include "twin/grasps.h"
 
 namespace physpring {
 namespace {
@@ -38,7 +39,7 @@ Recording AnchoredAt(int frame, const Twin& twin, const Recording& recording) {
     throw Error(fmt::format("recording {}: cannot begin in frame {}, expected 1 to {}",
                             recording.name, frame, frames - 3));
   }
-  if (recording.held.size() > 0 && !recording.held.all()) {
+  if (HasChangingGrasps(recording)) {
     throw Error(fmt::format(
         "recording {}: has grasps that begin or end ('held'), so it cannot begin in frame {}",
         recording.name, frame));

@@ -143,6 +143,10 @@ void SplitGrasps(const NpzFields& fields, Recording* recording) {
   FindShapesWhenHeld(recording);
 }
 
+bool HasChangingGrasps(const Recording& recording) {
+  return recording.held.size() > 0 && !recording.held.all();
+}
+
 void FindShapesWhenHeld(Recording* recording) {
   recording->shape_when_held.clear();
   const Points start = recording->start.leftCols(recording->particle_count());

@@ -23,6 +23,9 @@ void ReadControllers(NpzFields& fields, const std::string& frames, Recording* re
 // is seen when a grasp begins.
 void SplitGrasps(const NpzFields& fields, Recording* recording);
 
+// Whether some controller lets go, or takes hold after the start.
+bool HasChangingGrasps(const Recording& recording);
+
 // Sets shape_when_held from `held`. What is not seen in such a frame went along with the points
 // that are, from frame 0.
 void FindShapesWhenHeld(Recording* recording);

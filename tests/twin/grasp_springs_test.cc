@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grasp that begins within a motion takes hold of the body as it is then.
+// A released controller moves nothing; a grasp that begins within a motion takes hold of the body
+// as it is then.
 #include "twin/grasp_springs.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/support/swung_rope.h"
@@ -20,40 +23,136 @@
 namespace physpring {
 namespace {
 
-// A rope that a hand swings at its upper end; a second hand takes the lower one in frame 9.
-class CaughtRope : public testing::Test {
+// A rope held by a hand at either end; `held` says when the lower one holds.
+class HeldRope : public testing::Test {
  protected:
-  static constexpr int kParticles = 8, kFrames = 24, kCaught = 9;
+  static constexpr int kParticles = 8, kFrames = 24;
 
-  CaughtRope() : recording_(SwungRope(kParticles, kFrames)) {
+  HeldRope() : recording_(SwungRope(kParticles, kFrames)) {
     recording_.held.resize(kFrames, 2);
     recording_.held.setConstant(true);
-    recording_.held.col(1).head(kCaught).setConstant(false);
     recording_.start.conservativeResize(3, kParticles + 2);
     recording_.start.col(kParticles + 1) << 0.003, 0.002, -0.01 * kParticles;
     recording_.rest = recording_.start;
-    for (int t = 0; t < kFrames; ++t) {
-      Points& hands = recording_.controllers[t];
+    for (Points& hands : recording_.controllers) {
       hands.conservativeResize(3, 2);
-      hands.col(1) = recording_.start.col(kParticles + 1) +
-                     Eigen::Vector3d(0.01, 0.02, 0.01) * std::sin(0.3 * t);
-      recording_.points[t].row(1).array() += 0.001 * t;
+      hands.col(1) = recording_.start.col(kParticles + 1);
     }
-    FindShapesWhenHeld(&recording_);
     system_ = MakeStartSystem(recording_, {.max_neighbours = 4, .controller_max_neighbours = 3});
     ScaleToSubsteps(1 / recording_.fps, 20, 0.7, &system_);
     for (int e = 0; e < system_.spring_count(); ++e) system_.stiffness[e] *= 1 + 0.1 * (e % 3);
-    system_.effects.push_back({"control_latency", Eigen::VectorXd::Constant(1, 0.3 / 30)});
+    for (int t = 0; t < kFrames; ++t) weights_.emplace_back(Points::Random(3, kParticles));
   }
 
-  RolloutOptions Options() const {
+  static RolloutOptions Options() {
     RolloutOptions options;
     options.substeps = 30;
     return options;
   }
 
+  Episode All() const { return {&recording_, kFrames}; }
+
+  double Loss(const SpringMassSystem& system) const {
+    const auto rollout = RollOut(system, All(), Options());
+    double sum = 0;
+    for (int t = 0; t < kFrames; ++t) {
+      sum += weights_[t].cwiseProduct(rollout->positions()[t]).sum();
+    }
+    return sum;
+  }
+
+  SystemGradient GradientOfLoss() const {
+    return RollOut(system_, All(), Options())->Adjoint(weights_).gradient;
+  }
+
+  // Against central differences; `value` gives that of a system.
+  void ExpectDerivative(double found, double step,
+                        const std::function<double&(SpringMassSystem&)>& value,
+                        const std::string& what) const {
+    SpringMassSystem more = system_, less = system_;
+    value(more) += step;
+    value(less) -= step;
+    const double expected = (Loss(more) - Loss(less)) / (2 * step);
+    EXPECT_NEAR(found, expected, 1e-6 * std::abs(expected) + 1e-9) << what;
+  }
+
+  // With respect to the parameters of a spring; lengths act strongest.
+  void ExpectDerivatives(const SystemGradient& gradient, int e) const {
+    for (auto [values, found, part] :
+         {std::tuple{&SpringMassSystem::stiffness, gradient.stiffness[e], 1e-5},
+          std::tuple{&SpringMassSystem::dashpot, gradient.dashpot[e], 1e-5},
+          std::tuple{&SpringMassSystem::rest_length, gradient.rest_length[e], 1e-7}}) {
+      ExpectDerivative(
+          found, part * (system_.*values)[e],
+          [values, e](SpringMassSystem& s) -> double& { return (s.*values)[e]; },
+          "spring " + std::to_string(e));
+    }
+  }
+
+  void ExpectTheSameInLanes() const {
+    std::vector<SpringMassSystem> systems(5, system_);
+    for (std::size_t i = 0; i < systems.size(); ++i) systems[i].stiffness *= 1 + 0.05 * i;
+    const auto together = RollOutSideBySide(systems, All(), Options());
+    for (std::size_t i = 0; i < systems.size(); ++i) {
+      ASSERT_TRUE(together[i].has_value());
+      EXPECT_EQ(*together[i], RollOut(systems[i], All(), Options())->positions());
+    }
+  }
+
   Recording recording_;
   SpringMassSystem system_;
+  std::vector<Points> weights_;  // of the positions in the loss
+};
+
+// The lower hand lets go and takes hold again.
+class ReleasedRope : public HeldRope {
+ protected:
+  ReleasedRope() { recording_.held.block(6, 1, 9, 1).setConstant(false); }
+};
+
+TEST_F(ReleasedRope, MovesAsIfTheHandWereNotThere) {
+  Recording without = recording_;
+  without.held.resize(0, 0);
+  SpringMassSystem free = system_;
+  for (int e = 0; e < system_.spring_count(); ++e) {
+    if (std::max(system_.springs[e][0], system_.springs[e][1]) == kParticles + 1) {
+      free.stiffness[e] = free.dashpot[e] = 0;
+    }
+  }
+  const Episode held{&recording_, kFrames};
+  const auto whole = RollOut(system_, held, Options());
+  // the released frames alone, from the state that both have when the hand opens
+  recording_.held.col(1).setConstant(false);
+  const Episode released{&recording_, kFrames}, absent{&without, kFrames};
+  const auto open = RollOut(system_, released, Options());
+  const auto gone = RollOut(free, absent, Options());
+  EXPECT_EQ(open->positions(), gone->positions());
+  EXPECT_NE(whole->positions()[4], open->positions()[4]);
+}
+
+TEST_F(ReleasedRope, IsTheSameInLanes) { ExpectTheSameInLanes(); }
+
+TEST_F(ReleasedRope, HasTheRightGradient) {
+  const SystemGradient gradient = GradientOfLoss();
+  for (int e = 0; e < system_.spring_count(); ++e) {
+    if (system_.IsControllerSpring(e)) ExpectDerivatives(gradient, e);
+  }
+}
+
+// The upper hand swings it, the lower one takes it in frame 9.
+class CaughtRope : public HeldRope {
+ protected:
+  static constexpr int kCaught = 9;
+
+  CaughtRope() {
+    recording_.held.col(1).head(kCaught).setConstant(false);
+    for (int t = 0; t < kFrames; ++t) {
+      recording_.controllers[t].col(1) += Eigen::Vector3d(0.01, 0.02, 0.01) * std::sin(0.3 * t);
+      recording_.points[t].row(1).array() += 0.001 * t;
+    }
+    FindShapesWhenHeld(&recording_);
+    system_.effects.push_back({"control_latency", Eigen::VectorXd::Constant(1, 0.3 / 30)});
+  }
 };
 
 TEST_F(CaughtRope, IsHeldAsItIsThen) {
@@ -83,50 +182,13 @@ TEST_F(CaughtRope, IsHeldAsItIsThen) {
   EXPECT_GT(late, 1);
 }
 
-TEST_F(CaughtRope, IsTheSameInLanes) {
-  std::vector<SpringMassSystem> systems(5, system_);
-  for (std::size_t i = 0; i < systems.size(); ++i) systems[i].stiffness *= 1 + 0.05 * i;
-  const Episode episode{&recording_, kFrames};
-  const auto together = RollOutSideBySide(systems, episode, Options());
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    ASSERT_TRUE(together[i].has_value());
-    EXPECT_EQ(*together[i], RollOut(systems[i], episode, Options())->positions());
-  }
-}
+TEST_F(CaughtRope, IsTheSameInLanes) { ExpectTheSameInLanes(); }
 
-// Against central differences.
 TEST_F(CaughtRope, HasTheRightGradient) {
-  const Episode episode{&recording_, kFrames};
-  std::vector<Points> weights;
-  for (int t = 0; t < kFrames; ++t) weights.emplace_back(Points::Random(3, kParticles));
-  const auto loss = [&](const SpringMassSystem& system) {
-    const auto rollout = RollOut(system, episode, Options());
-    double sum = 0;
-    for (int t = 0; t < kFrames; ++t) sum += weights[t].cwiseProduct(rollout->positions()[t]).sum();
-    return sum;
-  };
-  const RolloutAdjoint adjoint = RollOut(system_, episode, Options())->Adjoint(weights);
-  const auto check = [&](double found, double step, auto value, const std::string& what) {
-    SpringMassSystem more = system_, less = system_;
-    value(more) += step;
-    value(less) -= step;
-    const double expected = (loss(more) - loss(less)) / (2 * step);
-    EXPECT_NEAR(found, expected, 1e-6 * std::abs(expected) + 1e-9) << what;
-  };
-  for (int e = 0; e < system_.spring_count(); ++e) {
-    const std::string name = std::to_string(e);
-    check(
-        adjoint.gradient.stiffness[e], 1e-5 * system_.stiffness[e],
-        [e](SpringMassSystem& s) -> double& { return s.stiffness[e]; }, "stiffness " + name);
-    check(
-        adjoint.gradient.dashpot[e], 1e-5 * system_.dashpot[e],
-        [e](SpringMassSystem& s) -> double& { return s.dashpot[e]; }, "dashpot " + name);
-    check(
-        adjoint.gradient.rest_length[e], 1e-7 * system_.rest_length[e],
-        [e](SpringMassSystem& s) -> double& { return s.rest_length[e]; }, "length " + name);
-  }
-  check(
-      adjoint.gradient.effects[0][0], 1e-6,
+  const SystemGradient gradient = GradientOfLoss();
+  for (int e = 0; e < system_.spring_count(); ++e) ExpectDerivatives(gradient, e);
+  ExpectDerivative(
+      gradient.effects[0][0], 1e-6,
       [](SpringMassSystem& s) -> double& { return s.effects[0].values[0]; }, "latency");
 }
 

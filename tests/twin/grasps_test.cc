@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grasps that begin and end: how they are read, and that a released controller moves nothing.
+// Grasps that begin and end: how they are read.
 #include "twin/grasps.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <tuple>
 
 #include "tests/support/recording_file.h"
 #include "tests/support/swung_rope.h"
-#include "trainer/bodies/start_system.h"
-#include "trainer/motion/lane_rollout.h"
-#include "trainer/motion/rollout.h"
 #include "twin/error.h"
-#include "twin/predict.h"
 #include "twin/recorded_input.h"
 
 namespace physpring {
@@ -106,98 +101,6 @@ TEST_F(HeldRecording, RefusesWhatIsNoGrasp) {
   for (std::size_t k = 3; k < 6; ++k) SetValue("controllers", k, kNan);
   EXPECT_EQ(ErrorOfChanged(),
             path_ + ": array 'controllers' holds nan at [1, 0], where 'held' says that it holds");
-}
-
-// A rope held by a hand at either end, the lower one of which lets go and takes hold again.
-class ReleasedRope : public testing::Test {
- protected:
-  static constexpr int kParticles = 8, kFrames = 24;
-
-  ReleasedRope() : recording_(SwungRope(kParticles, kFrames)) {
-    recording_.held.resize(kFrames, 2);
-    recording_.held.setConstant(true);
-    recording_.held.block(6, 1, 9, 1).setConstant(false);
-    recording_.start.conservativeResize(3, kParticles + 2);
-    recording_.start.col(kParticles + 1) << 0.003, 0.002, -0.01 * kParticles;
-    recording_.rest = recording_.start;
-    for (int t = 0; t < kFrames; ++t) {
-      Points& hands = recording_.controllers[t];
-      hands.conservativeResize(3, 2);
-      hands.col(1) = recording_.start.col(kParticles + 1);
-    }
-    system_ = MakeStartSystem(recording_, {.max_neighbours = 4, .controller_max_neighbours = 3});
-    ScaleToSubsteps(1 / recording_.fps, 20, 0.7, &system_);
-    for (int e = 0; e < system_.spring_count(); ++e) system_.stiffness[e] *= 1 + 0.1 * (e % 3);
-  }
-
-  RolloutOptions Options() const {
-    RolloutOptions options;
-    options.substeps = 30;
-    return options;
-  }
-
-  Recording recording_;
-  SpringMassSystem system_;
-};
-
-TEST_F(ReleasedRope, MovesAsIfTheHandWereNotThere) {
-  Recording without = recording_;
-  without.held.resize(0, 0);
-  SpringMassSystem free = system_;
-  for (int e = 0; e < system_.spring_count(); ++e) {
-    if (std::max(system_.springs[e][0], system_.springs[e][1]) == kParticles + 1) {
-      free.stiffness[e] = free.dashpot[e] = 0;
-    }
-  }
-  const Episode held{&recording_, kFrames};
-  const auto whole = RollOut(system_, held, Options());
-  // the released frames alone, from the state that both have when the hand opens
-  recording_.held.col(1).setConstant(false);
-  const Episode released{&recording_, kFrames}, absent{&without, kFrames};
-  const auto open = RollOut(system_, released, Options());
-  const auto gone = RollOut(free, absent, Options());
-  EXPECT_EQ(open->positions(), gone->positions());
-  EXPECT_NE(whole->positions()[4], open->positions()[4]);
-}
-
-TEST_F(ReleasedRope, IsTheSameInLanes) {
-  std::vector<SpringMassSystem> systems(5, system_);
-  for (std::size_t i = 0; i < systems.size(); ++i) systems[i].stiffness *= 1 + 0.05 * i;
-  const Episode episode{&recording_, kFrames};
-  const auto together = RollOutSideBySide(systems, episode, Options());
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    ASSERT_TRUE(together[i].has_value());
-    EXPECT_EQ(*together[i], RollOut(systems[i], episode, Options())->positions());
-  }
-}
-
-// Against central differences.
-TEST_F(ReleasedRope, HasTheRightGradient) {
-  const Episode episode{&recording_, kFrames};
-  std::vector<Points> weights;
-  for (int t = 0; t < kFrames; ++t) weights.emplace_back(Points::Random(3, kParticles));
-  const auto loss = [&](const SpringMassSystem& system) {
-    const auto rollout = RollOut(system, episode, Options());
-    double sum = 0;
-    for (int t = 0; t < kFrames; ++t) sum += weights[t].cwiseProduct(rollout->positions()[t]).sum();
-    return sum;
-  };
-  const SystemGradient gradient = RollOut(system_, episode, Options())->Adjoint(weights).gradient;
-  for (int e = 0; e < system_.spring_count(); ++e) {
-    if (!system_.IsControllerSpring(e)) continue;
-    // lengths act strongest
-    for (auto [values, found, part] :
-         {std::tuple{&SpringMassSystem::stiffness, gradient.stiffness[e], 1e-5},
-          std::tuple{&SpringMassSystem::dashpot, gradient.dashpot[e], 1e-5},
-          std::tuple{&SpringMassSystem::rest_length, gradient.rest_length[e], 1e-7}}) {
-      SpringMassSystem more = system_, less = system_;
-      const double step = part * (system_.*values)[e];
-      (more.*values)[e] += step;
-      (less.*values)[e] -= step;
-      const double expected = (loss(more) - loss(less)) / (2 * step);
-      EXPECT_NEAR(found, expected, 1e-6 * std::abs(expected) + 1e-9) << e;
-    }
-  }
 }
 
 }  // namespace
