@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -14,17 +13,18 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/diagnosis_checkpoint.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
-#include "cli/training_recordings.h"
 #include "cli/warnings.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/diagnosis_recordings.h"
+#include "jobs/diagnosis_checkpoint.h"
+#include "jobs/diagnosis_input.h"
+#include "jobs/training_recordings.h"
 #include "report/diagnosis/page.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_text.h"
@@ -33,7 +33,6 @@
 #include "twin/clock_offset.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
-#include "twin/numbering.h"
 #include "twin/output_lock.h"
 #include "twin/stop_request.h"
 
@@ -52,74 +51,21 @@ struct Outputs {
   std::string report, page, twin, checkpoint;
 };
 
-// Throws Error if the recording is one of `others`, or a copy.
-void ExpectNotAmong(const std::vector<Recording>& others, const Recording& recording,
-                    const std::string& path, const char* what, const char* why) {
-  for (const Recording& other : others) {
-    if (other.hash != recording.hash) continue;
-    throw Error(
-        fmt::format("{}: is among the recordings {}, too, as {}; {}", path, what, other.name, why));
-  }
-}
-
 // The recordings of the object before it changed: those that are given, or those that the twin was
-// trained on, if they are there and none of them is diagnosed. What effects a twin has already may
-// be of a change since.
-std::vector<Recording> RecordingsBefore(const DiagnoseArguments& arguments, const Twin& twin,
-                                        const FitData& data, const std::vector<Recording>& judged) {
-  std::vector<Recording> before;
+// trained on, if they are there.
+void ReadBefore(const DiagnoseArguments& arguments, const Twin& twin, DiagnosisInput* input) {
   for (const RecordingEntry& entry : ListRecordings(arguments.before, Role::kFit)) {
-    before.push_back(ReadRecordingFor(twin, entry.path));
-    for (const auto* others : {&data.recordings, &judged}) {
-      ExpectNotAmong(*others, before.back(), entry.path, "to diagnose",
-                     "it is from before the change or from after it");
-    }
+    input->before.push_back(ReadRecordingFor(twin, entry.path));
+    input->before_paths.push_back(entry.path);
   }
-  if (!before.empty() || !arguments.look_for_before) return before;
-  if (!twin.levels[0].system.effects.empty()) return {};
-  for (const auto* others : {&data.recordings, &judged}) {
-    for (const Recording& recording : *others) {
-      if (twin.TrainingOn(recording.hash)) return {};
-    }
-  }
+  if (!input->before.empty() || !arguments.look_for_before) return;
+  if (!MayBeFromBefore(twin, *input)) return;
   std::vector<std::string> files = {arguments.twin};
   for (const auto* list : {&arguments.recordings, &arguments.held_out}) {
     files.insert(files.end(), list->begin(), list->end());
   }
-  return FindTrainingRecordings(twin, files);
-}
-
-// A recording may declare another mass than the twin has; what it weighs shows in its motion alone.
-void WarnOfMass(const Twin& twin, const DiagnosisRecordings& chosen) {
-  if (twin.force_scale) return;    // it was weighed by forces
-  constexpr double kAlike = 0.01;  // masses are alike that differ by this part of the twin's
-  const double mass = twin.levels[0].system.mass.sum();
-  for (const auto* recordings : {&chosen.fit, &chosen.held_out}) {
-    for (const Recording& recording : *recordings) {
-      if (std::abs(recording.mass - mass) <= kAlike * mass) continue;
-      Tell(
-          "warning: recording {}: says that the object weighs {:.4g} kg; the twin's "
-          "{:.4g} kg are taken\n",
-          recording.name, recording.mass, mass);
-    }
-  }
-}
-
-// Such a twin lacks what is not in the list of effects, or it is not of this object.
-void WarnIfUseless(const Diagnosis& diagnosis) {
-  if (!(diagnosis.after.held > diagnosis.motionless)) return;
-  Tell(
-      "warning: the twin predicts worse than a body that does not move ({:.4g} m against "
-      "{:.4g} m): are the recordings of its object, in metres, with points in its order?\n",
-      diagnosis.after.held, diagnosis.motionless);
-}
-
-// Only level 0 is fitted.
-void WarnOfCoarseLevels(const Twin& twin) {
-  if (twin.levels.size() < 2) return;
-  Tell(
-      "warning: coarse levels have the effects, but are not fitted with them: physpring train "
-      "--effects fits a hierarchy\n");
+  input->before = FindTrainingRecordings(twin, files);
+  for (const Recording& recording : input->before) input->before_paths.push_back(recording.name);
 }
 
 // Makes the folder before the work, and checks that all outputs can be written.
@@ -180,23 +126,18 @@ Diagnosis DiagnoseWith(const DiagnosisCheckpoint& checkpoint, const Twin& twin,
 
 void Run(const DiagnoseArguments& arguments) {
   const Twin twin = ReadTwin(arguments.twin);
-  const auto fit = ListRecordings(arguments.recordings, Role::kFit);
-  const auto held_out = ListRecordings(arguments.held_out, Role::kHeldout);
-  FitData data = ByClockOf(twin, ReadFitData(fit));
-  std::vector<Recording> judged;
-  for (const RecordingEntry& entry : held_out) {
-    judged.push_back(ReadRecordingFor(twin, entry.path));
-    ExpectNotAmong(data.recordings, judged.back(), entry.path, "to fit", "it cannot judge them");
+  DiagnosisInput input;
+  input.data = ByClockOf(twin, ReadFitData(ListRecordings(arguments.recordings, Role::kFit)));
+  for (const RecordingEntry& entry : ListRecordings(arguments.held_out, Role::kHeldout)) {
+    input.judged.push_back(ReadRecordingFor(twin, entry.path));
+    input.judged_paths.push_back(entry.path);
   }
-  std::vector<Recording> before = RecordingsBefore(arguments, twin, data, judged);
-  for (std::vector<Recording>* recordings : {&data.recordings, &judged, &before}) {
-    for (Recording& recording : *recordings) {
-      ExpectLastingGrasps(recording);
-      WarnOfOddNumbering(twin, recording.name, &recording);
-    }
+  ReadBefore(arguments, twin, &input);
+  ExpectApart(input);
+  const DiagnosisRecordings chosen = CheckAndChoose(twin, &input);
+  for (const auto* recordings : {&input.data.recordings, &input.judged, &input.before}) {
     PrintRemarks(*recordings);
   }
-  const DiagnosisRecordings chosen = ChooseRecordings(data, judged, before);
   const Outputs outputs = MakeOutputs(arguments);
   const OutputLock lock(arguments.output);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen,
@@ -212,9 +153,8 @@ void Run(const DiagnoseArguments& arguments) {
   WriteFileAtomically(outputs.page, FormatDiagnosisPage(diagnosis, chosen, "Diagnosis of " + name));
   WriteTwin(diagnosis.twin, outputs.twin);
   checkpoint.Finish();
-  WarnOfMass(twin, chosen);
-  WarnIfUseless(diagnosis);
-  if (!diagnosis.effects.empty()) WarnOfCoarseLevels(diagnosis.twin);
+  PrintWarnings(WarningsOf(twin, chosen));
+  PrintWarnings(WarningsOf(diagnosis));
   fmt::print("{}", FormatDiagnosisText(diagnosis));
 }
 

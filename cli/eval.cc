@@ -9,23 +9,19 @@
 #include <string>
 #include <vector>
 
-#include "cli/checkpoint.h"
 #include "cli/commands.h"
-#include "cli/fit_report.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/warnings.h"
+#include "jobs/evaluation.h"
 #include "report/eval_report.h"
 #include "report/evaluation.h"
 #include "report/picture/page.h"
-#include "tracker/anchor.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/atomic_file.h"
 #include "twin/clock_offset.h"
 #include "twin/dataset.h"
-#include "twin/numbering.h"
-#include "twin/regrasp.h"
 
 namespace physpring {
 namespace {
@@ -34,8 +30,7 @@ struct EvalArguments {
   std::string twin;
   std::vector<std::string> recordings;
   std::string json, trajectory, picture;
-  PredictOptions options;
-  int anchor = 0;  // 0: none
+  EvaluationOptions options;
   int threads = 1;
 };
 
@@ -45,23 +40,6 @@ CLI::Validator EndsWithHtml() {
         return path.ends_with(".html") ? "" : path + " does not end with .html";
       },
       "");
-}
-
-EvaluatedRecording EvaluateFile(const Twin& twin, const RecordingEntry& entry,
-                                const EvalArguments& arguments) {
-  EvaluatedRecording evaluated;
-  evaluated.path = entry.path;
-  evaluated.recording = ReadRecordingFor(twin, entry.path);
-  evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
-  ExpectSameObject(twin, evaluated.recording);
-  const Twin held = HeldAsIn(&evaluated.recording, twin);
-  WarnOfOddNumbering(held, entry.path, &evaluated.recording);
-  evaluated.result = Evaluate(held, evaluated.recording, arguments.options);
-  if (arguments.anchor > 0) {
-    evaluated.anchored =
-        Evaluate(held, AnchoredAt(arguments.anchor, held, evaluated.recording), arguments.options);
-  }
-  return evaluated;
 }
 
 // Checks before the work that all outputs can be written. Trajectories of several recordings go to
@@ -75,34 +53,20 @@ void ExpectWritable(const EvalArguments& arguments, const std::vector<RecordingE
   ExpectOutputs({arguments.json, arguments.picture, folder ? "" : arguments.trajectory}, inputs);
 }
 
-// A twin that predicts worse than what needs no twin is of no use.
-void WarnIfUseless(const Evaluation& evaluation) {
-  std::vector<RecordingResult> results;
-  std::vector<int> first, last;
-  for (const EvaluatedRecording& evaluated : evaluation.recordings) {
-    results.push_back(evaluated.result);
-    first.push_back(evaluated.result.first_predicted);
-    last.push_back(evaluated.recording.frame_count());
-  }
-  const std::string little =
-      LittleExplained(results, first, last, evaluation.recordings[0].recording);
-  std::vector<std::string> warnings = NearerBaselines(results, first, last, "this");
-  if (!little.empty()) warnings.insert(warnings.begin(), little);
-  PrintWarnings(warnings);
-}
-
 void Run(const EvalArguments& arguments) {
   Evaluation evaluation{arguments.twin,
                         ReadTwin(arguments.twin),
-                        arguments.options.single_precision,
-                        arguments.anchor,
+                        arguments.options.predict.single_precision,
+                        arguments.options.anchor,
                         {}};
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
   ExpectWritable(arguments, entries);
   WarnIfUnfinished(evaluation.twin, arguments.twin);
   evaluation.recordings.resize(entries.size());
   ParallelFor(static_cast<int>(entries.size()), arguments.threads, [&](int i) {
-    evaluation.recordings[i] = EvaluateFile(evaluation.twin, entries[i], arguments);
+    evaluation.recordings[i] =
+        EvaluateRecording(evaluation.twin, entries[i],
+                          ReadRecordingFor(evaluation.twin, entries[i].path), arguments.options);
   });
 
   std::vector<Recording> recordings;
@@ -116,7 +80,7 @@ void Run(const EvalArguments& arguments) {
     WriteFileAtomically(arguments.picture, FormatPage(evaluation));
   }
   fmt::print("{}", FormatTables(evaluation));
-  WarnIfUseless(evaluation);
+  PrintWarnings(WarningsOf(evaluation));
 }
 
 }  // namespace
@@ -144,12 +108,12 @@ void AddEvalCommand(CLI::App& app) {
       ->check(EndsWithHtml())
       ->type_name("FILE.html");
   command
-      ->add_option("--anchor", arguments->anchor,
+      ->add_option("--anchor", arguments->options.anchor,
                    "also predict anew from this frame on, from the state that `track` finds there")
       ->check(WholeNumberBetween(1, std::numeric_limits<int>::max()))
       ->type_name("FRAME");
-  AddPrecision(command, &arguments->options.single_precision);
-  AddNumberOrAuto(command, "--substeps", &arguments->options.substeps,
+  AddPrecision(command, &arguments->options.predict.single_precision);
+  AddNumberOrAuto(command, "--substeps", &arguments->options.predict.substeps,
                   "sub-steps of a frame; auto: stable ones, no longer than in training");
   AddThreads(command, &arguments->threads, "recordings at the same time; FPS are truest with 1");
   command->callback([arguments] { Run(*arguments); });

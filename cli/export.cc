@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "exporter/folder.h"
+#include "jobs/checkpoint.h"
 #include "twin/free_twin.h"
 
 namespace physpring {

@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/output_files.h"
 #include "cli/warnings.h"
+#include "jobs/checkpoint.h"
 #include "report/info_text.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"

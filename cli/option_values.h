@@ -6,12 +6,12 @@
 #define PHYSPRING_CLI_OPTION_VALUES_H_
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <vector>
+
+#include "jobs/word.h"
 
 namespace physpring {
 
@@ -35,23 +35,6 @@ CLI::Validator OneOf(const std::vector<std::string>& words);
 
 // Adds --seed, which takes any whole number that a seed can be.
 CLI::Option* AddSeed(CLI::App* command, std::uint64_t* seed, const std::string& description);
-
-// A word and what it stands for.
-template <class Value>
-struct Word {
-  const char* word;
-  Value meaning;
-};
-
-// The words for the precision of the simulation's numbers, and whether it is single.
-inline constexpr Word<bool> kPrecisionWords[] = {{"double", false}, {"float", true}};
-
-// The word for `value`, which must be one of those listed.
-template <class Value, std::size_t kCount>
-std::string WordOf(const Word<Value> (&words)[kCount], const Value& value) {
-  const auto stands_for = [&](const Word<Value>& word) { return word.meaning == value; };
-  return std::find_if(std::begin(words), std::end(words), stands_for)->word;
-}
 
 // Adds an option that takes one of `words` and sets `value` to what the word stands for. The help
 // lists the words: "full|two-stage". They must outlive the command.

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "cli/checkpoint.h"
+#include "jobs/checkpoint.h"
 #include "tracker/live_tracker.h"
 #include "twin/error.h"
 

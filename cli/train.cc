@@ -13,27 +13,26 @@
 #include <string>
 #include <vector>
 
-#include "cli/checkpoint.h"
 #include "cli/commands.h"
-#include "cli/fit_report.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
 #include "cli/resume_options.h"
-#include "cli/train_options.h"
-#include "cli/training.h"
+#include "cli/train_flags.h"
+#include "cli/training_hint.h"
 #include "cli/warnings.h"
+#include "jobs/remarks.h"
+#include "jobs/train_options_json.h"
+#include "jobs/training.h"
 #include "report/info_text.h"
 #include "report/material_text.h"
 #include "trainer/bodies/factors.h"
 #include "trainer/data/fit_data.h"
-#include "trainer/reduction/registry.h"
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
-#include "twin/predict.h"
 
 namespace physpring {
 namespace {
@@ -45,47 +44,14 @@ struct TrainArguments {
   ResumeOptions run;
 };
 
-// The reductions that learn features: "learned".
-std::string FeatureReductions() {
-  std::string names;
-  for (const auto& reduction : AllReductions()) {
-    if (reduction->LearnsFeatures()) names += (names.empty() ? "" : " or ") + reduction->name();
-  }
-  return names;
-}
-
 TrainOptions OptionsOf(const TrainArguments& arguments) {
-  const bool two_stage = arguments.options.method == TrainOptions::Method::kTwoStage;
   TrainOptions options = arguments.options;
   if (options.neighbours == std::vector<int>{0}) options.neighbours.clear();  // auto
-
-  const auto expect = [](bool right, const char* flag, const std::string& what) {
-    if (!right) throw CLI::ValidationError(flag, what);
-  };
   const bool counts = std::count(options.neighbours.begin(), options.neighbours.end(), 0) == 0;
-  expect(counts, "--neighbours", "takes counts or auto, not both");
-  expect(!two_stage || options.neighbours.empty(), "--neighbours", "is chosen by two-stage itself");
-  const bool full = options.method == TrainOptions::Method::kFull;
-  expect(full || options.optimizer == TrainOptions::Optimizer::kAutomatic, "--optimizer",
-         "is of --method full");
-  expect(options.method != TrainOptions::Method::kSmooth || options.epochs == 0, "--epochs",
-         "is not of --method smooth, which ends when it gains nothing more");
-  expect(options.ratios.size() + 1 >= static_cast<std::size_t>(options.levels), "--ratios",
-         "needs one ratio for each level but level 0");
-  const bool given = options.ratios != TrainOptions().ratios;
-  expect(!given || options.ratios.size() + 1 == static_cast<std::size_t>(options.levels),
-         "--ratios", "are of levels 1, 2, ...: --levels must be one more than there are");
-  expect(options.reduction == TrainOptions().reduction || options.levels > 1, "--reduction",
-         "needs --levels 2 or more");
-  const bool learned_features =
-      options.network.features == TrainOptions::Network::Features::kLearned;
-  expect(learned_features || GetReduction(options.reduction).LearnsFeatures(), "--features",
-         "is of --reduction " + FeatureReductions());
-  expect(learned_features || options.levels > 1, "--features", "needs --levels 2 or more");
-  expect(!two_stage || arguments.effects.empty(), "--effects", "is not of --method two-stage");
-  expect(arguments.from.empty() || arguments.effects.empty(), "--effects",
-         "and --from exclude each other: level 0 comes with its effects");
-  expect(two_stage || !options.self_collision, "--self-collision", "is of --method two-stage");
+  if (!counts) throw CLI::ValidationError("--neighbours", "takes counts or auto, not both");
+  const TrainSources sources{!arguments.from.empty(), !arguments.effects.empty()};
+  const auto error = CheckTrainOptions(options, sources);
+  if (error) throw CLI::ValidationError("--" + error->option, error->why);
   return options;
 }
 
@@ -116,36 +82,8 @@ void Warn(const std::vector<std::string>& warnings) {
 Twin ReadLevel0(const std::string& path, const FitData& data) {
   Twin twin = ReadTwin(path);
   WarnIfUnfinished(twin, path);
-  ExpectSameObject(twin, data.recordings[0]);
-  for (const Recording& recording : data.recordings) {
-    if (!twin.TrainingOn(recording.hash)) {
-      throw Error(
-          fmt::format("{}: was not trained on recording {}; --from needs a twin of the same "
-                      "recordings",
-                      path, recording.name));
-    }
-  }
+  ExpectLevel0Of(data, twin, path);
   return twin;
-}
-
-// Those of a twin that was diagnosed.
-std::vector<EffectValues> ReadEffects(const std::string& path) {
-  std::vector<EffectValues> effects = ReadTwin(path).levels[0].system.effects;
-  if (effects.empty()) throw Error(fmt::format("{}: this twin has no effects", path));
-  return effects;
-}
-
-// Of forces that did not set the twin's scale.
-std::vector<std::string> WarnOfUnusedForces(const Twin& twin, const FitData& data) {
-  std::vector<std::string> warnings;
-  for (const Recording& recording : data.recordings) {
-    if (twin.force_scale || recording.force.empty()) continue;
-    warnings.push_back(fmt::format(
-        "recording {}: array 'force' is not used: it has no number in a frame for fitting, or does "
-        "not agree with how the grasps must pull the object (N, in the axes of the recording)",
-        recording.name));
-  }
-  return warnings;
 }
 
 void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
@@ -187,12 +125,39 @@ void ExpectWritable(const TrainArguments& arguments, const std::vector<Recording
   ExpectOutputs({arguments.output, arguments.log}, inputs);
 }
 
+// A run with progress and, where it takes long, a hint. A signal leaves a checkpoint and throws
+// Interrupted.
+TrainingRun TrainWith(const Checkpoint& checkpoint, const TrainingTask& task,
+                      const TrainArguments& arguments) {
+  const InterruptWatch watch;
+  std::optional<Progress> progress;  // from the first step on that is not in the checkpoint
+  bool hinted = false;
+  const auto show = [&](double share, const std::string& status) {
+    if (!progress) progress.emplace(share);
+    progress->Show(share, status);
+    if (hinted) return;
+    const std::string hint =
+        HintIfLong(task.options, progress->seconds(), progress->SecondsLeft(share));
+    hinted = !hint.empty();
+    if (hinted) progress->Say(hint);
+  };
+  TrainingRun run =
+      RunTraining(task, checkpoint, arguments.run.resume, arguments.run.checkpoint_interval, show);
+  progress.reset();
+  if (!run.stopped) return run;
+  Tell("physpring: stopped at {:.0f} %; the same command with --resume goes on from {}\n",
+       std::min(99.0, 100 * run.share), arguments.output);
+  throw Interrupted{watch.signal()};
+}
+
 void Run(const TrainArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   TrainOptions options = OptionsOf(arguments);
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kFit);
   const FitData data = ReadFitData(entries);
-  if (!arguments.effects.empty()) options.effects = ReadEffects(arguments.effects);
+  if (!arguments.effects.empty()) {
+    options.effects = EffectsOf(ReadTwin(arguments.effects), arguments.effects);
+  }
   std::optional<Twin> dense;
   if (!arguments.from.empty()) dense = ReadLevel0(arguments.from, data);
   const Checkpoint checkpoint(arguments.output, data, options, arguments.from);
@@ -207,18 +172,9 @@ void Run(const TrainArguments& arguments) {
     spdlog::info("warning: {}", warning);
   }
 
-  const TrainingRun run = RunTraining({data, options, dense}, checkpoint, arguments.run.resume,
-                                      arguments.run.checkpoint_interval);
-  if (run.signal != 0) {
-    Tell(
-        "physpring: stopped at {:.0f} %; the same command with --resume goes on "
-        "from {}\n",
-        std::min(99.0, 100 * run.share), arguments.output);
-    throw Interrupted{run.signal};
-  }
-  Warn(WarnOfUnusedForces(run.twin, data));
-  Warn(WarnOfUnjoinedControllers(run.twin, data.recordings[0].name));
-  const FitReport fit = JudgeFit(run.twin, ByClockOf(run.twin, data), options);
+  const TrainingTask task{data, options, dense};
+  const TrainingRun run = TrainWith(checkpoint, task, arguments);
+  const FitReport fit = JudgeTraining(task, run.twin);
   Warn(fit.warnings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   PrintReport(arguments.output, run, fit.line, elapsed.count());

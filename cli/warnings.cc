@@ -1,74 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/warnings.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <map>
-#include <set>
-
 #include "cli/message.h"
-#include "twin/error.h"
-#include "twin/grasps.h"
+#include "jobs/checkpoint.h"
+#include "jobs/remarks.h"
 
 namespace physpring {
-namespace {
-
-struct Alike {
-  std::string first;            // the file that it is said of first
-  std::set<std::string> files;  // all of them
-};
-
-}  // namespace
-
-std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings) {
-  std::map<std::string, Alike> files;
-  std::vector<std::string> order;
-  for (const std::string& warning : warnings) {
-    const std::size_t colon = std::min(warning.find(": "), warning.size());
-    const std::string what = warning.substr(colon);
-    const std::string file = warning.substr(0, colon);
-    const auto [found, is_new] = files.try_emplace(what, Alike{file, {}});
-    if (is_new) order.push_back(what);
-    found->second.files.insert(file);
-  }
-  std::vector<std::string> joined;
-  for (const std::string& what : order) {
-    const Alike& alike = files[what];
-    const std::size_t more = alike.files.size() - 1;
-    joined.push_back(more == 0 ? alike.first + what
-                               : fmt::format("{} and {} more{}", alike.first, more, what));
-  }
-  return joined;
-}
 
 void PrintWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : JoinAlike(warnings)) Tell("warning: {}\n", warning);
 }
 
-std::vector<std::string> WarningsOf(std::span<const Recording> recordings) {
-  std::vector<std::string> warnings;
-  for (const Recording& recording : recordings) {
-    warnings.insert(warnings.end(), recording.warnings.begin(), recording.warnings.end());
-  }
-  return warnings;
-}
-
 void PrintRemarks(std::span<const Recording> recordings) {
   PrintWarnings(WarningsOf(recordings));
-  std::vector<std::string> notes;
-  for (const Recording& recording : recordings) {
-    notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
-  }
-  for (const std::string& note : JoinAlike(notes)) Tell("note: {}\n", note);
+  for (const std::string& note : JoinAlike(NotesOf(recordings))) Tell("note: {}\n", note);
 }
 
-void ExpectLastingGrasps(const Recording& recording) {
-  if (!HasChangingGrasps(recording)) return;
-  throw Error(fmt::format(
-      "recording {}: has grasps that begin or end ('held'), which cannot be diagnosed yet",
-      recording.name));
+void WarnIfUnfinished(const Twin& twin, const std::string& path) {
+  if (IsFinished(twin)) return;
+  Tell("warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
+       path);
 }
 
 }  // namespace physpring

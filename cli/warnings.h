@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warnings to the user, "warning: FILE: WHAT". What is said of several files alike
-// is said once: "warning: FILE and 23 more: WHAT". Notes are the same with "note:".
+// Warnings to the user, "warning: FILE: WHAT", joined where they are alike (jobs/remarks.h). Notes
+// are the same with "note:".
 #ifndef PHYSPRING_CLI_WARNINGS_H_
 #define PHYSPRING_CLI_WARNINGS_H_
 
@@ -9,22 +9,17 @@
 #include <vector>
 
 #include "twin/recording.h"
+#include "twin/twin.h"
 
 namespace physpring {
 
-// One line each, "FILE: WHAT" joined where only the files differ, in the order of the first.
-std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings);
-
 void PrintWarnings(const std::vector<std::string>& warnings);
-
-// Those of all recordings.
-std::vector<std::string> WarningsOf(std::span<const Recording> recordings);
 
 // The recordings' warnings and notes.
 void PrintRemarks(std::span<const Recording> recordings);
 
-// Throws Error for a recording with grasps that begin or end: these cannot be diagnosed yet.
-void ExpectLastingGrasps(const Recording& recording);
+// Warns if the training that wrote the twin did not come to its end.
+void WarnIfUnfinished(const Twin& twin, const std::string& path);
 
 }  // namespace physpring
 

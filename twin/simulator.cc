@@ -188,8 +188,11 @@ void Simulator<Real>::RecordedFrameAdjoint(State* state_bar, SystemGradient* gra
   SystemGradient frame(step.effects().changed().system);
   step.AddGradients(node_step_.View(), h_, buffers, &frame);
   if (workspace->own_step) grasps_.ApplyAdjoint(input.released, &frame);
-  step.effects().FinishGradient(input.delay_rate_start, input.delay_rate_end, options_.frame_time,
-                                buffers.effects, &frame);
+  step.effects().FinishControllers(options_.frame_time, &buffers.effects);
+  workspace->controllers_start_bar_ = buffers.effects.start_bar;
+  workspace->controllers_end_bar_ = buffers.effects.end_bar;
+  step.effects().FinishGradient(input.delay_rate_start, input.delay_rate_end, buffers.effects,
+                                &frame);
   *gradient += frame;
 }
 

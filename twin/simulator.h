@@ -108,6 +108,11 @@ class Simulator<Real>::Workspace {
   explicit Workspace(const Simulator& simulator)
       : next(simulator.state_size()), start(next), buffers(simulator.step_.springs()) {}
 
+  // d loss / d the controllers of the frame whose adjoint was worked out last, 3 x controllers: at
+  // its start, at its end. That a grasp takes hold is taken as given.
+  const Points& controllers_start_bar() const { return controllers_start_bar_; }
+  const Points& controllers_end_bar() const { return controllers_end_bar_; }
+
  private:
   friend class Simulator;
   friend class LaneSimulator<Real>;
@@ -121,6 +126,7 @@ class Simulator<Real>::Workspace {
   typename Contact<Real>::Pairs pairs;  // the pairs of the frame
   Points controller_velocity;           // 3 x controllers, m/s, in the frame
   FrameInput input;                     // what moved the frame that was recorded last
+  Points controllers_start_bar_, controllers_end_bar_;
 };
 
 }  // namespace physpring

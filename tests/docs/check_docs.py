@@ -26,7 +26,8 @@ MOST_WORDS_IN_DECISION = 150
 DECISION_PARTS = ("Status", "Decision", "Against", "Measured")
 
 # Where pages of ours are, besides the root itself.
-FOLDERS = ("bench", "cli", "diagnosis", "docs", "exporter", "models", "plugin", "python", "registration", "report", "tracker",
+FOLDERS = ("bench", "cli", "diagnosis", "docs", "exporter", "jobs", "models", "plugin", "python",
+           "registration", "report", "tracker",
            "rollout", "scripts", "tests", "third_party", "tools", "trainer", "twin")
 
 FENCE = re.compile(r"^\s*(```|~~~)")

@@ -78,17 +78,23 @@ RolloutGradient Gradient(const TargetedRollout& rollout) {
     simulator.AdvanceFrame(input, &states.back(), &workspace);
   }
   const int nodes = simulator.node_count();
-  SystemGradient gradient(rollout.system);
+  RolloutGradient gradient{SystemGradient(rollout.system), {}, {}, {}, {}};
+  gradient.controllers_start.resize(rollout.frames.size());
+  gradient.controllers_end.resize(rollout.frames.size());
   NodeStates<Real> state_bar(states[0].size());
   for (std::size_t frame = rollout.frames.size(); frame-- > 0;) {
     const Points bar = LossGradient(rollout, frame, simulator.Positions(states[frame + 1]));
     for (int i = 0; i < nodes; ++i) {
       for (int j = 0; j < 3; ++j) state_bar[i].x[j] += static_cast<Real>(bar(j, i));
     }
-    simulator.AdvanceFrameAdjoint(states[frame], rollout.frames[frame], &state_bar, &gradient,
-                                  &workspace);
+    simulator.AdvanceFrameAdjoint(states[frame], rollout.frames[frame], &state_bar,
+                                  &gradient.system, &workspace);
+    gradient.controllers_start[frame] = workspace.controllers_start_bar();
+    gradient.controllers_end[frame] = workspace.controllers_end_bar();
   }
-  return {gradient, simulator.Positions(state_bar), simulator.Velocities(state_bar)};
+  gradient.position = simulator.Positions(state_bar);
+  gradient.velocity = simulator.Velocities(state_bar);
+  return gradient;
 }
 
 std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step) {
@@ -96,7 +102,7 @@ std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step) {
   SpringMassSystem& system = rollout.system;
   ContactCoefficients& contact = system.contact;
   const SystemGradient& exact = gradient.system;
-  std::vector<std::vector<CheckedVariable>> quantities(8);
+  std::vector<std::vector<CheckedVariable>> quantities(9);
   AddEntries("stiffness", &system.stiffness, exact.stiffness, 400 * step, &quantities[0]);
   AddEntries("rest length", &system.rest_length, exact.rest_length, 0.1 * step, &quantities[1]);
   AddEntries("dashpot", &system.dashpot, exact.dashpot, 3 * step, &quantities[2]);
@@ -105,6 +111,12 @@ std::vector<GradientReport> CheckRollout(TargetedRollout rollout, double step) {
   AddEntries("position", &rollout.position, gradient.position, 0.1 * step, &quantities[5]);
   AddEntries("velocity", &rollout.velocity, gradient.velocity, 3 * step, &quantities[6]);
   quantities[7] = {{"drag", &system.drag, 0.5 * step, exact.drag}};
+  for (std::size_t i = 0; i < rollout.frames.size(); ++i) {
+    AddEntries("controllers at the start", &rollout.frames[i].controllers_start,
+               gradient.controllers_start[i], 0.1 * step, &quantities[8]);
+    AddEntries("controllers at the end", &rollout.frames[i].controllers_end,
+               gradient.controllers_end[i], 0.1 * step, &quantities[8]);
+  }
   const ContactLaws<double>& laws = exact.contact;
   for (const auto& [name, object_name, most, member] : kContactCoefficients<double>) {
     quantities.push_back({{name, &(contact.surface.*member), 0.5 * step, laws.surface.*member}});

@@ -25,6 +25,8 @@ struct TargetedRollout {
 struct RolloutGradient {
   SystemGradient system;
   Points position, velocity;  // with respect to the start, 3 x nodes
+  // with respect to the controllers of each frame, 3 x controllers
+  std::vector<Points> controllers_start, controllers_end;
 };
 
 // `count` frames of RandomSystem(25, 2, seed) (about 100 springs) in free space: the controllers

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "twin/clock_offset.h"
 #include "twin/error.h"
@@ -60,24 +61,38 @@ void ExpectNew(const std::vector<Recording>& recordings,
   }
 }
 
+// The next recording of `entries`.
+void Add(const std::vector<RecordingEntry>& entries, Recording recording, FitData* data) {
+  std::vector<Recording>& recordings = data->recordings;
+  const RecordingEntry& entry = entries[recordings.size()];
+  recordings.push_back(std::move(recording));
+  ExpectSameObject(entry.path, recordings.back(), entries[0].path, recordings[0]);
+  if (!SeesMotion(recordings.back())) {
+    throw Error(fmt::format("{}: no point is seen in frames 1 to {}: there is nothing to fit",
+                            entry.path, recordings.back().train_frames - 1));
+  }
+  ExpectNew(recordings, entries);
+  WarnOfOddNumbering(recordings[0], entry.path, &recordings.back());
+  WarnOfMovedGrasps(recordings[0], &recordings.back());
+  const int own = -static_cast<int>(recordings.size());
+  data->continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
+                                                                       : own);
+}
+
 }  // namespace
+
+FitData CollectFitData(const std::vector<RecordingEntry>& entries,
+                       std::vector<Recording> recordings) {
+  FitData data;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Add(entries, std::move(recordings[i]), &data);
+  }
+  return data;
+}
 
 FitData ReadFitData(const std::vector<RecordingEntry>& entries) {
   FitData data;
-  for (const RecordingEntry& entry : entries) {
-    data.recordings.push_back(ReadRecording(entry.path));
-    ExpectSameObject(entry.path, data.recordings.back(), entries[0].path, data.recordings[0]);
-    if (!SeesMotion(data.recordings.back())) {
-      throw Error(fmt::format("{}: no point is seen in frames 1 to {}: there is nothing to fit",
-                              entry.path, data.recordings.back().train_frames - 1));
-    }
-    ExpectNew(data.recordings, entries);
-    WarnOfOddNumbering(data.recordings[0], entry.path, &data.recordings.back());
-    WarnOfMovedGrasps(data.recordings[0], &data.recordings.back());
-    const int own = -static_cast<int>(data.recordings.size());
-    data.continuous_recording.push_back(entry.continuous_recording >= 0 ? entry.continuous_recording
-                                                                        : own);
-  }
+  for (const RecordingEntry& entry : entries) Add(entries, ReadRecording(entry.path), &data);
   return data;
 }
 

@@ -25,6 +25,10 @@ struct FitData {
 // particles, controllers or frame rate.
 FitData ReadFitData(const std::vector<RecordingEntry>& entries);
 
+// The same for recordings that are read already. `entries` say where they come from.
+FitData CollectFitData(const std::vector<RecordingEntry>& entries,
+                       std::vector<Recording> recordings);
+
 // The recordings by the clock of a twin (clock_offset.h).
 FitData ByClockOf(const Twin& twin, FitData data);
 

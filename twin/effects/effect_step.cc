@@ -111,19 +111,25 @@ void EffectStep<Real>::TakeControllers(double fraction, double frame_time, State
 }
 
 template <class Real>
+void EffectStep<Real>::FinishControllers(double frame_time, EffectBuffers<Real>* buffers) const {
+  // forward: velocity = (end - start) / frame_time
+  const Points velocity_bar = buffers->tension.controller_velocity_bar / frame_time;
+  buffers->start_bar -= velocity_bar;
+  buffers->end_bar += velocity_bar;
+}
+
+template <class Real>
 void EffectStep<Real>::FinishGradient(const Points& start_rate, const Points& end_rate,
-                                      double frame_time, const EffectBuffers<Real>& buffers,
+                                      const EffectBuffers<Real>& buffers,
                                       SystemGradient* gradient) const {
   tensions_.AddGradient(buffers.tension, gradient);
   *gradient += buffers.gradient[0];
   double delay_bar = 0;
-  // forward: velocity = (end - start) / frame_time
-  const Points velocity_bar = buffers.tension.controller_velocity_bar / frame_time;
   if (start_rate.cols() == buffers.start_bar.cols()) {
-    delay_bar += (buffers.start_bar - velocity_bar).cwiseProduct(start_rate).sum();
+    delay_bar += buffers.start_bar.cwiseProduct(start_rate).sum();
   }
   if (end_rate.cols() == buffers.end_bar.cols()) {
-    delay_bar += (buffers.end_bar + velocity_bar).cwiseProduct(end_rate).sum();
+    delay_bar += buffers.end_bar.cwiseProduct(end_rate).sum();
   }
   effects_.ChangeAdjoint(delay_bar, gradient);
 }

@@ -63,10 +63,12 @@ class EffectStep {
   // from start to end, and moved with (end - start) / frame_time, or 0 if that is 0.
   void TakeControllers(double fraction, double frame_time, State* state_bar,
                        EffectBuffers<Real>* buffers) const;
+  // Completes start_bar and end_bar after the sub-steps of a frame.
+  void FinishControllers(double frame_time, EffectBuffers<Real>* buffers) const;
   // Adds the sums of a frame to `gradient`, which holds those with respect to the changed system
   // so far, and turns it into one with respect to the system and its effects. start_rate and
   // end_rate: see FrameInput.
-  void FinishGradient(const Points& start_rate, const Points& end_rate, double frame_time,
+  void FinishGradient(const Points& start_rate, const Points& end_rate,
                       const EffectBuffers<Real>& buffers, SystemGradient* gradient) const;
 
  private:

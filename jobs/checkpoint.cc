@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/checkpoint.h"
+#include "jobs/checkpoint.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/message.h"
-#include "cli/output_files.h"
-#include "cli/train_options.h"
-#include "training_code.h"
+#include "jobs/train_options_json.h"
+#include "jobs/training_code.h"
 #include "twin/error.h"
 #include "twin/json_text.h"
 #include "twin/quote.h"
@@ -40,12 +38,6 @@ bool IsFinished(const Twin& twin) {
   return finished == twin.training_state.end() || finished->second.ToInts() == std::vector<int>{1};
 }
 
-void WarnIfUnfinished(const Twin& twin, const std::string& path) {
-  if (IsFinished(twin)) return;
-  Tell("warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
-       path);
-}
-
 Checkpoint::Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
                        const std::string& from)
     : path_(path) {
@@ -57,8 +49,10 @@ Checkpoint::Checkpoint(const std::string& path, const FitData& data, const Train
   labels_.seed = options.seed;
 }
 
+bool Checkpoint::IsFile() const { return !path_.empty() && fs::exists(path_); }
+
 void Checkpoint::ExpectReplaceable(bool force) const {
-  if (!Exists(path_)) return;
+  if (!IsFile()) return;
   Twin twin;
   try {
     twin = ReadTwin(path_);
@@ -103,7 +97,7 @@ void Checkpoint::ExpectSameTraining(const Twin& twin) const {
 }
 
 std::optional<Twin> Checkpoint::Resume(Journal* journal) const {
-  if (!Exists(path_)) return {};
+  if (!IsFile()) return {};
   Twin twin = ReadTwin(path_);
   ExpectSameTraining(twin);
   const auto code = twin.training_state.find(kCode);
@@ -147,13 +141,13 @@ Twin Checkpoint::Labelled(const Twin& twin, bool finished) const {
 Twin Checkpoint::Write(const Twin& so_far, const Journal& journal) const {
   Twin twin = Labelled(so_far, false);
   for (const auto& [name, array] : journal.Save()) twin.training_state[kJournal + name] = array;
-  WriteTwin(twin, path_);
+  if (!path_.empty()) WriteTwin(twin, path_);
   return twin;
 }
 
 Twin Checkpoint::WriteFinished(const Twin& twin) const {
   const Twin labelled = Labelled(twin, true);
-  WriteTwin(labelled, path_);
+  if (!path_.empty()) WriteTwin(labelled, path_);
   return labelled;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How good a twin is on the recordings that it was trained on.
-#ifndef PHYSPRING_CLI_FIT_REPORT_H_
-#define PHYSPRING_CLI_FIT_REPORT_H_
+#ifndef PHYSPRING_JOBS_FIT_REPORT_H_
+#define PHYSPRING_JOBS_FIT_REPORT_H_
 
 #include <string>
 #include <vector>
@@ -36,4 +36,4 @@ std::string LittleExplained(const std::vector<RecordingResult>& results,
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_CLI_FIT_REPORT_H_
+#endif  // PHYSPRING_JOBS_FIT_REPORT_H_

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/diagnosis_checkpoint.h"
+#include "jobs/diagnosis_checkpoint.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/output_files.h"
-#include "training_code.h"
+#include "jobs/training_code.h"
 #include "twin/error.h"
 #include "twin/json_text.h"
 #include "twin/npz.h"
@@ -66,8 +65,8 @@ DiagnosisCheckpoint::DiagnosisCheckpoint(const std::string& path, const std::str
                    .dump()) {}
 
 void DiagnosisCheckpoint::ExpectReplaceable(const std::string& report, bool allowed) const {
-  const bool begun = Exists(path_);
-  if (allowed || (!begun && !Exists(report))) return;
+  const bool begun = fs::exists(path_);
+  if (allowed || (!begun && !fs::exists(report))) return;
   const bool finished =
       !begun || ReadCheckpoint(path_).at(kFinishedDiagnosis).ToInts() == std::vector<int>{1};
   throw Error(fmt::format("{}: {}", fs::path(path_).parent_path().string(),
@@ -77,7 +76,7 @@ void DiagnosisCheckpoint::ExpectReplaceable(const std::string& report, bool allo
 }
 
 void DiagnosisCheckpoint::Resume(Journal* journal) const {
-  if (!Exists(path_)) return;
+  if (!fs::exists(path_)) return;
   const Npz arrays = ReadCheckpoint(path_);
   const Json in_file = ReadOf(arrays, path_);
   const Json now = ParseJson(of_json_, path_);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A twin file is the checkpoint of the training that writes it. It holds the twin so far, the state
 // that the training goes on from, and what the twin is trained on and how.
-#ifndef PHYSPRING_CLI_CHECKPOINT_H_
-#define PHYSPRING_CLI_CHECKPOINT_H_
+#ifndef PHYSPRING_JOBS_CHECKPOINT_H_
+#define PHYSPRING_JOBS_CHECKPOINT_H_
 
 #include <optional>
 #include <string>
@@ -17,13 +17,11 @@ namespace physpring {
 // Whether the training that wrote a twin came to its end. True for a twin from elsewhere.
 bool IsFinished(const Twin& twin);
 
-// Warns on stderr if the training that wrote the twin did not come to its end.
-void WarnIfUnfinished(const Twin& twin, const std::string& path);
-
 class Checkpoint {
  public:
-  // The checkpoint of the training on `data` with `options`, which writes to `path`. `from` is the
-  // file that level 0 comes from; if it is empty, level 0 is fitted.
+  // The checkpoint of the training on `data` with `options`, which writes to `path`; if that is
+  // empty, nothing is written or read. `from` is the file that level 0 comes from; if it is empty,
+  // level 0 is fitted.
   Checkpoint(const std::string& path, const FitData& data, const TrainOptions& options,
              const std::string& from);
 
@@ -44,6 +42,7 @@ class Checkpoint {
   Twin WriteFinished(const Twin& twin) const;
 
  private:
+  bool IsFile() const;
   void ExpectSameTraining(const Twin& twin) const;
   Twin Labelled(const Twin& twin, bool finished) const;
 
@@ -53,4 +52,4 @@ class Checkpoint {
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_CLI_CHECKPOINT_H_
+#endif  // PHYSPRING_JOBS_CHECKPOINT_H_

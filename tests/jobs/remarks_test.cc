@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/warnings.h"
+#include "jobs/remarks.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(Warnings, AreSaidOnceOfFilesAlike) {
+TEST(Remarks, AreSaidOnceOfFilesAlike) {
   EXPECT_EQ(JoinAlike({"a.npz: no mass", "a.npz: 3 points", "b.npz: no mass", "c.npz: no mass"}),
             (Lines{"a.npz and 2 more: no mass", "a.npz: 3 points"}));
   EXPECT_EQ(JoinAlike({"of no file", "b: 1", "b: 2"}), (Lines{"of no file", "b: 1", "b: 2"}));

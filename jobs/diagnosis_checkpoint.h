@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // checkpoint.npz in the folder of a diagnosis. It holds what the diagnosis has worked out so far
 // (journal.h) and what is diagnosed, so that a diagnosis that was stopped can go on.
-#ifndef PHYSPRING_CLI_DIAGNOSIS_CHECKPOINT_H_
-#define PHYSPRING_CLI_DIAGNOSIS_CHECKPOINT_H_
+#ifndef PHYSPRING_JOBS_DIAGNOSIS_CHECKPOINT_H_
+#define PHYSPRING_JOBS_DIAGNOSIS_CHECKPOINT_H_
 
 #include <string>
 #include <vector>
@@ -42,4 +42,4 @@ class DiagnosisCheckpoint {
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_CLI_DIAGNOSIS_CHECKPOINT_H_
+#endif  // PHYSPRING_JOBS_DIAGNOSIS_CHECKPOINT_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/training_recordings.h"
+#include "jobs/training_recordings.h"
 
 #include <filesystem>
 #include <optional>

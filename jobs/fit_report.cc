@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/fit_report.h"
+#include "jobs/fit_report.h"
 
 #include <fmt/format.h>
 

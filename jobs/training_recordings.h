@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The recordings that a twin was trained on, where they are still there: a twin names them, and
 // knows them by their hash.
-#ifndef PHYSPRING_CLI_TRAINING_RECORDINGS_H_
-#define PHYSPRING_CLI_TRAINING_RECORDINGS_H_
+#ifndef PHYSPRING_JOBS_TRAINING_RECORDINGS_H_
+#define PHYSPRING_JOBS_TRAINING_RECORDINGS_H_
 
 #include <string>
 #include <vector>
@@ -19,4 +19,4 @@ std::vector<Recording> FindTrainingRecordings(const Twin& twin,
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_CLI_TRAINING_RECORDINGS_H_
+#endif  // PHYSPRING_JOBS_TRAINING_RECORDINGS_H_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/training.h"
+#include "jobs/training.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -9,10 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "cli/interrupt.h"
-#include "cli/progress.h"
-#include "cli/training_hint.h"
 #include "trainer/fits/train.h"
+#include "twin/error.h"
+#include "twin/predict.h"
 #include "twin/stop_request.h"
 
 namespace physpring {
@@ -40,19 +39,17 @@ void AddTime(const std::string& part, double seconds,
 // A run in progress: what its journal calls.
 class Running {
  public:
-  Running(const TrainOptions& options, const Checkpoint& checkpoint, double interval,
+  Running(const Checkpoint& checkpoint, double interval, const TellProgress& progress,
           Journal* journal, TrainingRun* run)
-      : options_(options),
-        checkpoint_(checkpoint),
+      : checkpoint_(checkpoint),
         interval_(interval),
+        progress_(progress),
         journal_(*journal),
         run_(*run) {
     journal->progress = [this](double share, const std::string& status) { Begin(share, status); };
     journal->kept = [this](const Journal::Piece& piece) { End(piece); };
     journal->reached = [this](const Twin& twin) { so_far_ = twin; };
   }
-
-  int signal() const { return interrupt_.signal(); }
 
   void WriteUnfinished() {
     const Stopwatch writing;
@@ -70,13 +67,7 @@ class Running {
   // Before a step.
   void Begin(double share, const std::string& status) {
     StopIfRequested();
-    if (!progress_) progress_.emplace(share);
-    progress_->Show(share, status);
-    if (hinted_) return;
-    const std::string hint =
-        HintIfLong(options_, progress_->seconds(), progress_->SecondsLeft(share));
-    hinted_ = !hint.empty();
-    if (hinted_) progress_->Say(hint);
+    progress_(share, status);
   }
   // After a step.
   void End(const Journal::Piece& piece) {
@@ -95,43 +86,30 @@ class Running {
     spdlog::info("checkpoint written in {:.2f} s", seconds);
   }
 
-  const InterruptWatch interrupt_;
-  const TrainOptions& options_;
   const Checkpoint& checkpoint_;
   double interval_;
+  const TellProgress& progress_;
   Journal& journal_;
   TrainingRun& run_;
   Twin so_far_;
-  std::optional<Progress> progress_;  // from the first step on that is not in the checkpoint
-  bool hinted_ = false;
   Stopwatch since_step_, since_checkpoint_;
   double checkpoint_seconds_ = 0;
 };
 
-}  // namespace
-
-TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
-                        double interval) {
-  Journal journal;
-  TrainingRun run;
-  if (resume) {
-    const std::optional<Twin> before = checkpoint.Resume(&journal);
-    if (before && IsFinished(*before)) {
-      run.twin = *before;
-      return run;
-    }
+// Of forces that did not set the twin's scale.
+std::vector<std::string> WarnOfUnusedForces(const Twin& twin, const FitData& data) {
+  std::vector<std::string> warnings;
+  for (const Recording& recording : data.recordings) {
+    if (twin.force_scale || recording.force.empty()) continue;
+    warnings.push_back(fmt::format(
+        "recording {}: array 'force' is not used: it has no number in a frame for fitting, or does "
+        "not agree with how the grasps must pull the object (N, in the axes of the recording)",
+        recording.name));
   }
-  Running running(task.options, checkpoint, interval, &journal, &run);
-  try {
-    const Work work(&journal, checkpoint.Key());
-    running.WriteFinished(Train(task.data, task.options, task.dense, work));
-  } catch (const Stopped&) {
-    run.signal = running.signal();
-    running.WriteUnfinished();
-  }
-  return run;
+  return warnings;
 }
 
+// A line for each controller that no spring of the twin joins, naming the recording.
 std::vector<std::string> WarnOfUnjoinedControllers(const Twin& twin, const std::string& recording) {
   const SpringMassSystem& system = twin.levels[0].system;
   const int nodes = system.node_count();
@@ -146,6 +124,56 @@ std::vector<std::string> WarnOfUnjoinedControllers(const Twin& twin, const std::
         recording, c, nearest));
   }
   return warnings;
+}
+
+}  // namespace
+
+TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
+                        double interval, const TellProgress& progress) {
+  Journal journal;
+  TrainingRun run;
+  if (resume) {
+    const std::optional<Twin> before = checkpoint.Resume(&journal);
+    if (before && IsFinished(*before)) {
+      run.twin = *before;
+      return run;
+    }
+  }
+  Running running(checkpoint, interval, progress, &journal, &run);
+  try {
+    const Work work(&journal, checkpoint.Key());
+    running.WriteFinished(Train(task.data, task.options, task.dense, work));
+  } catch (const Stopped&) {
+    run.stopped = true;
+    running.WriteUnfinished();
+  }
+  return run;
+}
+
+void ExpectLevel0Of(const FitData& data, const Twin& twin, const std::string& path) {
+  ExpectSameObject(twin, data.recordings[0]);
+  for (const Recording& recording : data.recordings) {
+    if (twin.TrainingOn(recording.hash)) continue;
+    throw Error(fmt::format(
+        "{}: was not trained on recording {}; --from needs a twin of the same recordings", path,
+        recording.name));
+  }
+}
+
+std::vector<EffectValues> EffectsOf(const Twin& twin, const std::string& path) {
+  if (!twin.levels[0].system.effects.empty()) return twin.levels[0].system.effects;
+  throw Error(fmt::format("{}: this twin has no effects", path));
+}
+
+FitReport JudgeTraining(const TrainingTask& task, const Twin& twin) {
+  FitReport report = JudgeFit(twin, ByClockOf(twin, task.data), task.options);
+  std::vector<std::string> warnings = WarnOfUnusedForces(twin, task.data);
+  for (const auto& more : {WarnOfUnjoinedControllers(twin, task.data.recordings[0].name),
+                           std::vector<std::string>(report.warnings)}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
+  report.warnings = warnings;
+  return report;
 }
 
 }  // namespace physpring

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/evaluation.h"
+
+#include <utility>
+
+#include "jobs/fit_report.h"
+#include "tracker/anchor.h"
+#include "twin/evaluate.h"
+#include "twin/numbering.h"
+#include "twin/regrasp.h"
+
+namespace physpring {
+
+EvaluatedRecording EvaluateRecording(const Twin& twin, const RecordingEntry& entry,
+                                     Recording recording, const EvaluationOptions& options) {
+  EvaluatedRecording evaluated;
+  evaluated.path = entry.path;
+  evaluated.recording = std::move(recording);
+  evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
+  ExpectSameObject(twin, evaluated.recording);
+  const Twin held = HeldAsIn(&evaluated.recording, twin);
+  WarnOfOddNumbering(held, entry.path, &evaluated.recording);
+  evaluated.result = Evaluate(held, evaluated.recording, options.predict);
+  if (options.anchor > 0) {
+    evaluated.anchored =
+        Evaluate(held, AnchoredAt(options.anchor, held, evaluated.recording), options.predict);
+  }
+  return evaluated;
+}
+
+std::vector<std::string> WarningsOf(const Evaluation& evaluation) {
+  std::vector<RecordingResult> results;
+  std::vector<int> first, last;
+  for (const EvaluatedRecording& evaluated : evaluation.recordings) {
+    results.push_back(evaluated.result);
+    first.push_back(evaluated.result.first_predicted);
+    last.push_back(evaluated.recording.frame_count());
+  }
+  const std::string little =
+      LittleExplained(results, first, last, evaluation.recordings[0].recording);
+  std::vector<std::string> warnings = NearerBaselines(results, first, last, "this");
+  if (!little.empty()) warnings.insert(warnings.begin(), little);
+  return warnings;
+}
+
+}  // namespace physpring
