@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // physpring export: a twin -> a folder of MJCF.
-#include "exporter/export.h"
+#include "jobs/export.h"
 
 #include <fmt/format.h>
 
@@ -8,15 +8,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/commands.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
+#include "cli/warnings.h"
 #include "exporter/folder.h"
-#include "jobs/checkpoint.h"
-#include "twin/free_twin.h"
+#include "jobs/export_words.h"
 
 namespace physpring {
 namespace {
@@ -26,24 +24,6 @@ struct ExportArguments {
   bool force = false;
   ExportOptions options;
 };
-
-// An option that takes one of these words, the first one by default.
-template <class Kind>
-CLI::Option* AddKind(CLI::App* command, const std::string& name, Kind* kind,
-                     const std::vector<std::pair<std::string, Kind>>& kinds,
-                     const std::string& description) {
-  std::vector<std::string> words;
-  for (const auto& [word, value] : kinds) words.push_back(word);
-  const auto take = [kind, kinds](const std::string& text) {
-    for (const auto& [word, value] : kinds) {
-      if (text == word) *kind = value;
-    }
-  };
-  return command->add_option_function<std::string>(name, take, description)
-      ->check(CLI::Validator(OneOf(words), ""))
-      ->type_name(fmt::format("{}", fmt::join(words, "|")))
-      ->default_str(words.front());
-}
 
 // `text` as a word for the shell.
 std::string ShellWord(const std::string& text) {
@@ -74,41 +54,15 @@ std::string CommandLine(const CLI::App& command) {
   return line;
 }
 
-std::string DescribeLevel(const ExportedLevel& level) {
-  const LevelPlan& plan = level.plan;
-  const SpringMassSystem& system = plan.system();
-  std::string text = fmt::format("{}: {} nodes, {} springs, {} controllers; time step {:.4g} ms",
-                                 level.model, system.node_count(), system.spring_count(),
-                                 system.controllers, 1e3 * plan.timestep);
-  if (plan.substep < plan.timestep) {
-    text += fmt::format(" with sub-steps of {:.4g} ms", 1e3 * plan.substep);
-  }
-  text += fmt::format(", largest stable one {}\n", plan.LargestTimestep());
-  for (const std::string& difference : plan.differences) text += "  " + difference + "\n";
-  if (plan.springs != SpringKind::kFlex) return text;
-  const FlexRounding& rounding = level.flexes.rounding;
-  return text + fmt::format(
-                    "  {} springs in {} flexes, rounded: stiffness by {:.2g} % (at most {:.2g} %), "
-                    "damping by {:.2g} N s/m ({:.2g}), rest length at most {:.2g} mm; {} springs "
-                    "stay tendons\n",
-                    system.spring_count() - static_cast<int>(level.flexes.tendons.size()),
-                    level.flexes.groups.size(), 100 * rounding.stiffness_mean,
-                    100 * rounding.stiffness_max, rounding.dashpot_mean, rounding.dashpot_max,
-                    1e3 * rounding.rest_length_max, level.flexes.tendons.size());
-}
-
 void Run(const ExportArguments& arguments, const std::string& command_line) {
   const Twin read = ReadTwin(arguments.twin);
   WarnIfUnfinished(read, arguments.twin);
-  const bool free = arguments.options.controllers == ControllerKind::kNone;
-  const Twin twin = free ? WithoutControllers(read) : read;
-  const Export result = ExportTwin(twin, arguments.options, command_line);
-  WriteFolder(arguments.output, result.files, arguments.force);
-  for (const std::string& warning : result.warnings) {
+  const ExportedFolder folder = MakeExport(read, arguments.options, command_line);
+  WriteFolder(arguments.output, folder.files, arguments.force);
+  for (const std::string& warning : folder.warnings) {
     Tell("warning: {}: {}\n", arguments.twin, warning);
   }
-  fmt::print("{}\n", arguments.output);
-  for (const ExportedLevel& level : result.levels) fmt::print("{}", DescribeLevel(level));
+  fmt::print("{}\n{}", arguments.output, folder.text);
 }
 
 void AddModelOptions(CLI::App* command, ExportOptions* options) {
@@ -122,27 +76,14 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
           ""))
       ->type_name("N|all")
       ->default_str("all");
-  AddKind<SpringKind>(
-      command, "--springs", &options->springs,
-      {{"auto", SpringKind::kAuto},
-       {"tendon", SpringKind::kTendon},
-       {"plugin", SpringKind::kPlugin},
-       {"flex", SpringKind::kFlex}},
-      "what stands for the springs; auto: tendons, the plugin where they would leave "
-      "out an effect");
-  AddKind<ControllerKind>(
-      command, "--controllers", &options->controllers,
-      {{"auto", ControllerKind::kAuto},
-       {"mocap", ControllerKind::kMocap},
-       {"slide", ControllerKind::kSlide},
-       {"none", ControllerKind::kNone}},
+  AddChoice(command, "--springs", &options->springs, kSpringWords,
+            "what stands for the springs; auto: tendons, the plugin where they would leave out an "
+            "effect");
+  AddChoice(
+      command, "--controllers", &options->controllers, kControllerWords,
       "what holds the object; auto: slide where dashpots must feel its velocity; none: it is free");
-  AddKind<ContactKind>(command, "--contact", &options->contact,
-                       {{"auto", ContactKind::kAuto},
-                        {"mujoco", ContactKind::kMujoco},
-                        {"plugin", ContactKind::kPlugin},
-                        {"none", ContactKind::kNone}},
-                       "whose contacts; auto: the plugin's if the springs are, else MuJoCo's");
+  AddChoice(command, "--contact", &options->contact, kContactWords,
+            "whose contacts; auto: the plugin's if the springs are, else MuJoCo's");
   command->add_option("--flexes", options->flexes, "at most, with --springs flex")
       ->check(WholeNumberBetween(1, 1000))
       ->capture_default_str();

@@ -12,6 +12,7 @@
 #include "cli/output_files.h"
 #include "cli/track_stream.h"
 #include "cli/warnings.h"
+#include "jobs/tracking.h"
 #include "tracker/track_recording.h"
 #include "twin/clock_offset.h"
 #include "twin/npz_fields.h"
@@ -45,25 +46,6 @@ void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
   print("interpolated between those seen, no twin", errors.interpolated);
 }
 
-// A twin that tracks worse than what needs no measurement, or no twin, is of no use; nor is one
-// that is not where the cloud is.
-void WarnIfUseless(const TrackedMotion& motion) {
-  constexpr double kWorse = 1.1;
-  const TrackErrors& errors = motion.errors;
-  if (motion.cloud.distance > motion.cloud.spacing) {
-    PrintWarnings(
-        {fmt::format("it is lost: in the last second the cloud is {:.1f} mm from the "
-                     "nearest nodes, which are {:.1f} mm apart",
-                     1e3 * motion.cloud.distance, 1e3 * motion.cloud.spacing)});
-  }
-  if (errors.tracked > kWorse * errors.predicted) {
-    PrintWarnings({"measurements make it worse than the prediction without any"});
-  }
-  if (errors.tracked > kWorse * errors.interpolated) {
-    PrintWarnings({"interpolation without a twin is nearer"});
-  }
-}
-
 void Run(const TrackArguments& arguments) {
   if (arguments.stream) return TrackStream(arguments.twin, arguments.stream_options);
   ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
@@ -84,7 +66,7 @@ void Run(const TrackArguments& arguments) {
              arguments.output, motion.position[0].cols(), motion.position.size(),
              motion.frames_per_second, motion.frames_per_second / recording.fps);
   PrintErrors(arguments, motion);
-  WarnIfUseless(motion);
+  PrintWarnings(WarningsOf(motion));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <string>
 
 namespace physpring {
@@ -24,6 +25,15 @@ template <class Value, std::size_t kCount>
 std::string WordOf(const Word<Value> (&words)[kCount], const Value& value) {
   const auto stands_for = [&](const Word<Value>& word) { return word.meaning == value; };
   return std::find_if(std::begin(words), std::end(words), stands_for)->word;
+}
+
+// What the word stands for, or nothing.
+template <class Value, std::size_t kCount>
+std::optional<Value> MeaningOf(const Word<Value> (&words)[kCount], const std::string& word) {
+  const auto is_it = [&](const Word<Value>& one) { return one.word == word; };
+  const auto found = std::find_if(std::begin(words), std::end(words), is_it);
+  if (found == std::end(words)) return std::nullopt;
+  return found->meaning;
 }
 
 }  // namespace physpring

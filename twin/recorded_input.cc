@@ -26,6 +26,21 @@ Points PlaceBefore(const Recording& recording, int frame, double delay, Points* 
   return back == 0 ? to : Points(to + back * (from - to));
 }
 
+void PlaceBeforeAdjoint(const Recording& recording, int frame, double delay, const Points& bar,
+                        std::vector<Points>* controllers_bar) {
+  const double place = frame - delay;
+  const int next = static_cast<int>(std::ceil(place));
+  if (next <= 0) {
+    controllers_bar->front() += bar;
+  } else if (next >= static_cast<int>(recording.controllers.size())) {
+    controllers_bar->back() += bar;
+  } else {
+    const double back = next - place;
+    (*controllers_bar)[static_cast<std::size_t>(next) - 1] += back * bar;
+    (*controllers_bar)[static_cast<std::size_t>(next)] += (1 - back) * bar;
+  }
+}
+
 // Whether a controller holds on the way from frame - 1 to `frame`.
 bool Holds(const Recording& recording, int frame, Eigen::Index controller) {
   return recording.held(frame - 1, controller) && recording.held(frame, controller);
@@ -72,6 +87,15 @@ FrameInput RecordedInput(const Recording& recording, int frame, double delay) {
   input.controllers_start = PlaceBefore(recording, frame - 1, frames, &input.delay_rate_start);
   input.controllers_end = PlaceBefore(recording, frame, frames, &input.delay_rate_end);
   return input;
+}
+
+void RecordedInputAdjoint(const Recording& recording, int frame, double delay,
+                          const Points& start_bar, const Points& end_bar,
+                          std::vector<Points>* controllers_bar) {
+  if (recording.controllers.empty()) return;
+  const double frames = delay * recording.fps;
+  PlaceBeforeAdjoint(recording, frame - 1, frames, start_bar, controllers_bar);
+  PlaceBeforeAdjoint(recording, frame, frames, end_bar, controllers_bar);
 }
 
 }  // namespace physpring

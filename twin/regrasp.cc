@@ -39,7 +39,7 @@ void MoveGrasp(const MovedGrasp& moved, double arc_length, double shortest,
 // Whether a controller is as far from the particles that are nearest to it in the reference as it
 // is there. However the body starts, these distances hardly change.
 bool HoldsTheSame(const Eigen::Vector3d& place, const Points& start, const Eigen::Vector3d& known,
-                  const Points& shape, const NeighbourSearch& search, double spacing) {
+                  const NeighbourSearch& search, double spacing) {
   constexpr int kNearest = 3;
   double change = 0, count = 0;
   for (const Neighbour& one : search.Nearest(known, kNearest)) {
@@ -62,7 +62,7 @@ std::vector<MovedGrasp> FindMovedGrasps(const Points& reference, const Recording
   for (int c = 0; c < recording.controller_count(); ++c) {
     const Eigen::Vector3d place = recording.start.col(particles + c);
     const Eigen::Vector3d known = reference.col(particles + c);
-    if (HoldsTheSame(place, start, known, shape, search, spacing)) continue;
+    if (HoldsTheSame(place, start, known, search, spacing)) continue;
     const Eigen::Vector3d there = *motion.Move(place);
     moved.push_back({c, there, (there - known).norm()});
   }

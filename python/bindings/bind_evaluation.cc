@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+
+#include "jobs/evaluation.h"
+#include "jobs/remarks.h"
+#include "python/bindings/arrays.h"
+#include "python/bindings/bindings.h"
+#include "python/bindings/watched_work.h"
+#include "report/eval_report.h"
+#include "report/picture/page.h"
+#include "trainer/solvers/parallel.h"
+#include "twin/clock_offset.h"
+#include "twin/error.h"
+#include "twin/regrasp.h"
+
+namespace physpring {
+namespace {
+
+// A recording for a twin, by its clock.
+Recording RecordingFor(const Twin& twin, const GivenRecording& given) {
+  Recording recording = given.recording;
+  UseClockOf(twin, &recording);
+  return recording;
+}
+
+Evaluation EvaluateAll(const GivenTwin& twin, const std::vector<const GivenRecording*>& recordings,
+                       const EvaluationOptions& options, int threads) {
+  if (recordings.empty()) throw Error("no recording is given");
+  Evaluation evaluation{twin.path, twin.twin, options.predict.single_precision, options.anchor, {}};
+  const int count = static_cast<int>(recordings.size());
+  evaluation.recordings.resize(recordings.size());
+  RunWatched(nb::none(), [&](const TellShare& /*tell*/) {
+    ParallelFor(count, threads, [&](int i) {
+      evaluation.recordings[i] = EvaluateRecording(
+          twin.twin, recordings[i]->entry, RecordingFor(twin.twin, *recordings[i]), options);
+    });
+  });
+  std::vector<std::string> added;
+  for (int i = 0; i < count; ++i) {
+    const auto& now = evaluation.recordings[i].recording.warnings;
+    const auto before = static_cast<std::ptrdiff_t>(recordings[i]->recording.warnings.size());
+    added.insert(added.end(), now.begin() + before, now.end());
+  }
+  Warn(added);
+  Warn(WarningsOf(evaluation));
+  return evaluation;
+}
+
+const LevelResult& ResultOf(const Evaluation& evaluation, std::size_t recording,
+                            std::size_t level) {
+  if (recording >= evaluation.recordings.size() ||
+      level >= evaluation.recordings[recording].result.levels.size()) {
+    throw nb::index_error("no such recording or level");
+  }
+  return evaluation.recordings[recording].result.levels[level];
+}
+
+NumpyDoubles PredictNodes(const GivenTwin& twin, const GivenRecording& given, int level,
+                          std::optional<int> substeps, bool single_precision) {
+  Recording recording = RecordingFor(twin.twin, given);
+  ExpectSameObject(twin.twin, recording);
+  const Twin held = HeldAsIn(&recording, twin.twin);
+  std::vector<Points> motion;
+  RunWatched(nb::none(), [&](const TellShare& /*tell*/) {
+    motion = Predict(held, level, recording, {single_precision, substeps.value_or(0)});
+  });
+  return CopyOf(motion);
+}
+
+}  // namespace
+
+void BindEvaluation(nb::module_& module) {
+  nb::class_<Evaluation> evaluation(module, "EvaluationResult");
+  evaluation.def("json", &FormatJson);
+  evaluation.def("text", &FormatTables);
+  evaluation.def("html", &FormatPage);
+  evaluation.def(
+      "points",
+      [](const Evaluation& self, std::size_t recording, std::size_t level) {
+        return CopyOf(ResultOf(self, recording, level).points);
+      },
+      nb::arg("recording"), nb::arg("level"));
+  evaluation.def(
+      "errors",
+      [](const Evaluation& self, std::size_t recording, std::size_t level) {
+        return CopyOf(ResultOf(self, recording, level).lifted.track);
+      },
+      nb::arg("recording"), nb::arg("level"));
+  module.def(
+      "evaluate",
+      [](const GivenTwin& twin, const std::vector<const GivenRecording*>& recordings,
+         std::optional<int> substeps, bool single_precision, std::optional<int> anchor,
+         int threads) {
+        return EvaluateAll(twin, recordings,
+                           {{single_precision, substeps.value_or(0)}, anchor.value_or(0)}, threads);
+      },
+      nb::arg("twin"), nb::arg("recordings"), nb::arg("substeps").none(),
+      nb::arg("single_precision"), nb::arg("anchor").none(), nb::arg("threads"));
+  module.def("predict", &PredictNodes, nb::arg("twin"), nb::arg("recording"), nb::arg("level"),
+             nb::arg("substeps").none(), nb::arg("single_precision"));
+}
+
+}  // namespace physpring

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "jobs/checkpoint.h"
+#include "python/bindings/arrays.h"
+#include "python/bindings/bindings.h"
+#include "report/info_text.h"
+#include "report/material_text.h"
+#include "twin/contact_law.h"
+#include "twin/effects/effect_json.h"
+#include "twin/hierarchy.h"
+#include "twin/lift.h"
+#include "twin/stability.h"
+
+namespace physpring {
+namespace {
+
+using Springs = nb::ndarray<nb::numpy, int>;
+
+GivenTwin LoadTwin(const std::string& path) {
+  GivenTwin given{path, ReadTwin(path)};
+  if (!IsFinished(given.twin)) Warn({path + ": its training is not finished"});
+  return given;
+}
+
+std::string ReprOfTwin(const GivenTwin& given) {
+  std::string levels;
+  for (const TwinLevel& level : given.twin.levels) {
+    levels += fmt::format("{}{} nodes, {} springs", levels.empty() ? "" : "; ",
+                          level.system.node_count(), level.system.spring_count());
+  }
+  return fmt::format("<physpring.Twin '{}': {}>", given.twin.name, levels);
+}
+
+// A property that is a view of a member, which may be written to.
+template <class Member>
+void AddView(nb::class_<TwinLevel>* level, const char* name, Member member, const char* doc) {
+  level->def_prop_ro(
+      name,
+      [member](nb::handle self) {
+        return ViewOf(&(nb::cast<TwinLevel&>(self).system.*member), self);
+      },
+      doc, kHasOwner);
+}
+
+void BindLevel(nb::module_& module) {
+  nb::class_<TwinLevel> level(
+      module, "Level",
+      "One level of a twin: an explicit spring-mass system. Arrays are views: what is written to\n"
+      "them changes the twin. Spring e joins columns (a, b) of `position`, nodes first, "
+      "controllers\n"
+      "after them, and pulls a towards b with F = k (|d| - L) + c (v_b - v_a).n, d = x_b - x_a.");
+  AddView(&level, "position", &SpringMassSystem::position,
+          "(nodes + controllers, 3) reference configuration, m.");
+  AddView(&level, "mass", &SpringMassSystem::mass, "(nodes,) kg.");
+  AddView(&level, "stiffness", &SpringMassSystem::stiffness, "(springs,) k, N/m.");
+  AddView(&level, "rest_length", &SpringMassSystem::rest_length, "(springs,) L, m.");
+  AddView(&level, "dashpot", &SpringMassSystem::dashpot, "(springs,) c, N s/m.");
+  AddView(&level, "contact_radius", &SpringMassSystem::contact_radius,
+          "(nodes,) distance from a surface at which a node touches it, m.");
+  level.def_prop_ro(
+      "springs",
+      [](nb::handle self) {
+        auto& springs = nb::cast<TwinLevel&>(self).system.springs;
+        return nb::ndarray<nb::numpy, const int>(springs.data()->data(), {springs.size(), 2}, self);
+      },
+      "(springs, 2) the columns of `position` that each joins.", kHasOwner);
+  level.def_prop_rw(
+      "drag", [](const TwinLevel& self) { return self.system.drag; },
+      [](TwinLevel& self, double drag) { self.system.drag = drag; }, "1/s: v <- v exp(-h drag).");
+  level.def_prop_ro("node_count", [](const TwinLevel& self) { return self.system.node_count(); });
+  level.def_prop_ro("spring_count",
+                    [](const TwinLevel& self) { return self.system.spring_count(); });
+  level.def_prop_ro("controller_count",
+                    [](const TwinLevel& self) { return self.system.controllers; });
+  level.def_prop_ro(
+      "substeps_per_second", [](const TwinLevel& self) { return self.substeps_per_second; },
+      "With which it was trained.");
+  level.def_prop_ro(
+      "assignment", [](const TwinLevel& self) { return CopyOf(self.assignment); },
+      "(nodes of the level below,) the node of this level; empty at level 0.", kHasOwner);
+  level.def_prop_ro(
+      "contact",
+      [](const TwinLevel& self) {
+        nb::dict contact;
+        for (const auto& coefficient : kContactCoefficients<double>) {
+          contact[coefficient.name] = self.system.contact.surface.*coefficient.member;
+          contact[coefficient.object_name] = self.system.contact.object.*coefficient.member;
+        }
+        return contact;
+      },
+      "The coefficients of contact.");
+  level.def_prop_ro("_effects_json",
+                    [](const TwinLevel& self) { return EffectsToJson(self.system.effects); });
+  level.def(
+      "largest_timestep",
+      [](const TwinLevel& self) { return ComputeStabilityBound(self.system).timestep; },
+      "The largest stable sub-step, s (no safety taken off).");
+}
+
+}  // namespace
+
+void BindTwin(nb::module_& module) {
+  BindLevel(module);
+  using Class = GivenTwin;
+  nb::class_<Class> twin(module, "Twin",
+                         "The learned spring-mass systems of one object, from dense (level 0) to "
+                         "coarse.");
+  twin.def_static("load", &LoadTwin, nb::arg("path"),
+                  "Reads NAME.twin.npz. Raises Error for anything malformed.");
+  twin.def(
+      "save",
+      [](Class& self, const std::string& path) {
+        WriteTwin(self.twin, path);
+        self.path = path;
+      },
+      nb::arg("path"),
+      "Writes NAME.twin.npz, whole or not at all. Raises Error, and writes nothing, for a twin "
+      "that\n"
+      "`load` would refuse.");
+  twin.def(
+      "copy", [](const Class& self) { return Class(self); }, "One that shares nothing.");
+  twin.def_prop_ro(
+      "levels",
+      [](nb::handle self) {
+        nb::list levels;
+        for (TwinLevel& level : nb::cast<Class&>(self).twin.levels) {
+          levels.append(nb::cast(&level, nb::rv_policy::reference_internal, self));
+        }
+        return levels;
+      },
+      "list of Level.");
+  twin.def_prop_ro("path", [](const Class& self) { return self.path; });
+  twin.def_prop_ro("name", [](const Class& self) { return self.twin.name; });
+  twin.def_prop_ro(
+      "fps", [](const Class& self) { return self.twin.fps; },
+      "Frames per second of what it was trained on.");
+  twin.def_prop_ro("seed", [](const Class& self) { return self.twin.seed; });
+  twin.def_prop_ro(
+      "points", [](const Class& self) { return self.twin.points; },
+      "How many of level 0's nodes are measured points, the first ones.");
+  twin.def_prop_ro("controller_velocity",
+                   [](const Class& self) { return self.twin.controller_velocity; });
+  twin.def_prop_ro(
+      "gravity", [](const Class& self) { return CopyOf(Eigen::VectorXd(self.twin.gravity)); },
+      kHasOwner);
+  twin.def_prop_ro(
+      "ground",
+      [](const Class& self) -> std::optional<NumpyDoubles> {
+        if (!self.twin.ground.plane) return std::nullopt;
+        return CopyOf(Eigen::VectorXd(*self.twin.ground.plane));
+      },
+      "(4,) a, b, c, d of the plane a x + b y + c z = d, or None.", kHasOwner);
+  twin.def_prop_ro("clock_offset", [](const Class& self) { return self.twin.clock_offset; });
+  twin.def_prop_ro("force_scale", [](const Class& self) { return self.twin.force_scale; });
+  twin.def_prop_ro("_options_json", [](const Class& self) { return self.twin.options_json; });
+  twin.def_prop_ro(
+      "trained_on",
+      [](const Class& self) {
+        std::vector<std::pair<std::string, std::string>> names;
+        for (const TrainedOn& one : self.twin.trained_on) names.emplace_back(one.name, one.hash);
+        return names;
+      },
+      "(name, hash) of each recording.");
+  twin.def("_material_text", [](const Class& self) {
+    return self.twin.material ? DescribeMaterial(*self.twin.material) : std::string();
+  });
+  twin.def(
+      "average",
+      [](const Class& self, int level, const Numbers<2>& particles) {
+        const int nodes = LevelOf(self.twin, 0).system.node_count();
+        LevelOf(self.twin, level);
+        return CopyOf(
+            AverageOverMembers(self.twin, level, PointsFrom(particles, nodes, "particles")));
+      },
+      nb::arg("level"), nb::arg("particles"),
+      "(nodes, 3) positions or velocities of a level's nodes: the mass-weighted means of their\n"
+      "members. `particles`: (nodes of level 0, 3).");
+  twin.def(
+      "lift",
+      [](const Class& self, int level, const Numbers<2>& start, const Numbers<3>& nodes) {
+        const int particles = LevelOf(self.twin, 0).system.node_count();
+        const Lift lift(self.twin, level, PointsFrom(start, particles, "start"));
+        std::vector<Points> lifted;
+        for (const Points& frame :
+             FramesFrom(nodes, LevelOf(self.twin, level).system.node_count(), "nodes")) {
+          lifted.push_back(lift.Apply(frame));
+        }
+        return CopyOf(lifted);
+      },
+      nb::arg("level"), nb::arg("start"), nb::arg("nodes"),
+      "(T, nodes of level 0, 3) level 0's particles as the nodes of `level` carry them along.\n"
+      "`start`: (nodes of level 0, 3) where they start; `nodes`: (T, nodes of the level, 3).");
+  twin.def("__repr__", &ReprOfTwin);
+  twin.def("__str__", [](const Class& self) { return DescribeTwin(self.twin); });
+}
+
+}  // namespace physpring

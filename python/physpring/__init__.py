@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""PhySPRING: spring-mass twins of real deformable objects, learned from measured points.
+
+    import physpring
+    recording = physpring.Recording.from_arrays(points=points, controllers=hands, fps=30, mass=0.06)
+    twin = physpring.train(recording)
+    print(physpring.evaluate(twin, another_recording))
+    physpring.export(twin, 'rope')            # MuJoCo models
+
+SI units, z up. Results are those of the program `physpring`, bit for bit. What is wrong raises
+`physpring.Error`, a ValueError, with the program's line; what you should know is a
+`physpring.PhyspringWarning`.
+"""
+from physpring._core import (Error, Level, PhyspringWarning, Recording, SimulatorState, Twin,
+                             __version__, kernel)
+from physpring._diagnosis import Report, diagnose
+from physpring._evaluation import Evaluation, Track, evaluate, predict, track
+from physpring._export import export
+from physpring._recordings import load_dataset
+from physpring._simulation import Simulator, simulate
+from physpring._training import train
+
+__all__ = [
+    'Error', 'Evaluation', 'Level', 'PhyspringWarning', 'Recording', 'Report', 'Simulator',
+    'SimulatorState', 'Track', 'Twin', '__version__', 'diagnose', 'evaluate', 'export', 'kernel',
+    'load_dataset', 'predict', 'simulate', 'track', 'train'
+]

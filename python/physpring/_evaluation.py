@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A twin against recordings: what it predicts, how far that is off, and where hidden parts are."""
+from __future__ import annotations
+
+import dataclasses
+import html
+import json
+import os
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physpring import _core
+from physpring._recordings import (RecordingLike, precision_of, recordings_of, threads_of, twin_of)
+
+Array = NDArray[np.float64]
+
+
+class Evaluation:
+    """How far a twin is from recordings. `print` shows the tables of `physpring eval`."""
+
+    def __init__(self, result: _core.EvaluationResult):
+        self._result = result
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `physpring eval --json` writes (docs/eval.md); lengths in metres."""
+        return json.loads(self._result.json())
+
+    def points(self, recording: int = 0, level: int = 0) -> Array:
+        """(T, N, 3) the measured points as the level predicts them, in all frames, m."""
+        return self._result.points(recording, level)
+
+    def errors(self, recording: int = 0, level: int = 0) -> Array:
+        """(T,) mean distance of predicted from measured points in each frame, m; NaN: none seen."""
+        return self._result.errors(recording, level)
+
+    def save_json(self, path: str | os.PathLike) -> None:
+        """Writes what `physpring eval --json` does."""
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(self._result.json())
+
+    def save_page(self, path: str | os.PathLike) -> None:
+        """Writes a page with pictures and a film, as `physpring eval --picture` does."""
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(self._result.html())
+
+    def __str__(self) -> str:
+        return self._result.text()
+
+    def __repr__(self) -> str:
+        levels = self.to_dict()['levels']
+        errors = ', '.join(f"level {level['level']} {_millimetres(level)}" for level in levels)
+        return f'<physpring.Evaluation: {errors}>'
+
+    def _repr_html_(self) -> str:
+        return f'<pre>{html.escape(str(self))}</pre>'
+
+
+def _millimetres(level: dict[str, Any]) -> str:
+    error = level['prediction']['track_lifted']
+    return 'no data' if error is None else f'{1e3 * error:.2f} mm'
+
+
+def evaluate(twin: _core.Twin | str | os.PathLike,
+             recordings: RecordingLike | Iterable[RecordingLike],
+             *,
+             substeps: int | None = None,
+             precision: str = 'double',
+             anchor: int | None = None,
+             threads: int | None = 1) -> Evaluation:
+    """Predicts recordings of the twin's object with every level of it, as `physpring eval` does.
+
+    recordings: a Recording, a path, or several; a folder stands for its `heldout` ones. anchor: also
+    predict anew from this frame on, from the state that `track` finds there. threads: recordings at
+    the same time. A twin that is no better than what needs no twin is a PhyspringWarning.
+    """
+    return Evaluation(
+        _core.evaluate(twin_of(twin), recordings_of(recordings, 'heldout'), substeps,
+                       precision_of(precision), anchor, threads_of(threads)))
+
+
+def predict(twin: _core.Twin | str | os.PathLike,
+            recording: RecordingLike,
+            *,
+            level: int = 0,
+            substeps: int | None = None,
+            precision: str = 'double') -> Array:
+    """(T, nodes, 3) where the nodes of a level are in each frame of a recording, m: from its start
+    and the motion of its controllers alone."""
+    one, = recordings_of(recording, 'heldout')
+    return _core.predict(twin_of(twin), one, level, substeps, precision_of(precision))
+
+
+@dataclasses.dataclass(frozen=True)
+class Track:
+    """Where all particles of an object are, found from a part of them. Errors are mean distances of
+    the points that were not told, m; NaN where there are none."""
+    position: Array  #: (T, particles, 3) m
+    velocity: Array  #: (T, particles, 3) m/s
+    hidden: NDArray[np.int32]  #: the points that were not told
+    error: float
+    error_predicted: float  #: of the prediction from frame 0, without any measurement
+    error_interpolated: float  #: of interpolation between the points that are told, without a twin
+    frames_per_second: float  #: of processor time, by one thread
+
+
+def track(twin: _core.Twin | str | os.PathLike,
+          recording: RecordingLike,
+          *,
+          cloud: bool = False,
+          hide: float = 0,
+          seed: int = 1) -> Track:
+    """Follows a twin's object through a recording that sees only a part of it, as `physpring track`
+    does. cloud: follow the recording's `surface`, and judge by its points. hide: this part of the
+    points is not told (0 to 0.95), and judged by; `seed` says which.
+    """
+    if not 0 <= hide <= 0.95:
+        raise _core.Error(f'hide is {hide}, expected a number from 0 to 0.95')
+    if cloud and hide > 0:
+        raise _core.Error('hide is for points: with cloud=True all of them are hidden')
+    one, = recordings_of(recording, 'heldout')
+    return Track(**_core.track(twin_of(twin), one, cloud, hide, seed))

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A twin -> MuJoCo models."""
+from __future__ import annotations
+
+import os
+import shlex
+from typing import TYPE_CHECKING
+
+from physpring import _core
+from physpring._recordings import twin_of
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+def export(twin: _core.Twin | str | os.PathLike,
+           folder: str | os.PathLike | None = None,
+           *,
+           level: int | None = None,
+           springs: str = 'auto',
+           controllers: str = 'auto',
+           contact: str = 'auto',
+           flexes: int = 8,
+           timestep: float | None = None,
+           mesh: str | os.PathLike | None = None,
+           name: str | None = None,
+           force: bool = False) -> dict[str, bytes] | mujoco.MjSpec:
+    """The levels of a twin as MuJoCo models, as `physpring export` makes them (docs/export.md).
+
+    folder: where to write levelN.xml, scenes and what they need; then the files by name are
+        returned. None: nothing is written, and the scene of one level (`level`, default 0) is
+        returned as a mujoco.MjSpec, to be changed, attached or compiled.
+    springs: 'auto', 'tendon', 'plugin' or 'flex'. controllers: 'auto', 'mocap', 'slide' or 'none'.
+    contact: 'auto', 'mujoco', 'plugin' or 'none'. timestep: of the scenes, s. mesh: file of a
+    surface to draw. name: prefix of all names. force: write into a folder that has files in it.
+    """
+    given = twin_of(twin)
+    if folder is None and level is None:
+        level = 0
+    words = ['physpring', 'export', os.path.basename(given.path)]
+    for flag, value, usual in (('-o', folder, None), ('--level', level, None),
+                               ('--springs', springs, 'auto'),
+                               ('--controllers', controllers, 'auto'),
+                               ('--contact', contact, 'auto'), ('--flexes', flexes, 8),
+                               ('--timestep', timestep, None), ('--mesh', mesh, None),
+                               ('--name', name, None)):
+        if value != usual:
+            words += [flag, os.path.basename(os.path.normpath(os.fspath(value)))
+                      if flag in ('-o', '--mesh') else str(value)]
+    if not 1 <= flexes <= 1000:
+        raise _core.Error(f'flexes is {flexes}, expected a whole number from 1 to 1000')
+    made = _core.export_twin(given, shlex.join(words), name or '', -1 if level is None else level,
+                             springs, controllers, contact, flexes, timestep or 0.0,
+                             '' if mesh is None else os.fspath(mesh))
+    if folder is not None:
+        made.write(os.fspath(folder), force)
+        return made.files
+    return _spec_of(made.files)
+
+
+def _spec_of(files: dict[str, bytes]) -> mujoco.MjSpec:
+    """The scene of an export of one level."""
+    import mujoco  # pylint: disable=import-outside-toplevel
+    return mujoco.MjSpec.from_string(files['scene.xml'].decode(), assets=files)
