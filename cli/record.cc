@@ -15,6 +15,7 @@
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/warnings.h"
+#include "rollout/mujoco_library.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
 #include "twin/stop_request.h"
@@ -68,6 +69,7 @@ Recording Simulate(const std::string& scene, const RecordOptions& options) {
 
 void Run(const std::string& scene, const std::string& output, bool force,
          const RecordOptions& options) {
+  ExpectMujoco();
   ExpectOutputs({output}, {scene});
   const OutputLock lock(output);
   ExpectNew(output, force);

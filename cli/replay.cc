@@ -18,6 +18,7 @@
 #include "cli/warnings.h"
 #include "report/eval_report.h"
 #include "rollout/controller_replay.h"
+#include "rollout/mujoco_library.h"
 #include "rollout/plugin_library.h"
 #include "twin/atomic_file.h"
 #include "twin/checks/motion_scale.h"
@@ -158,6 +159,7 @@ void WarnOfMovedGrasps(const Twin& twin, Recording* recording) {
 }
 
 void Run(const ReplayArguments& arguments) {
+  ExpectMujoco();
   const std::string missing = WhyNoPlugin();
   ExpectOutputs({arguments.video, arguments.json},
                 {arguments.scene, arguments.recording, arguments.twin});

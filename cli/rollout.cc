@@ -25,6 +25,7 @@
 #include "report/rollout_report.h"
 #include "rollout/camera_thread.h"
 #include "rollout/make_policy.h"
+#include "rollout/mujoco_library.h"
 #include "rollout/plugin_library.h"
 #include "rollout/sweep.h"
 #include "rollout/sweep_folder.h"
@@ -141,6 +142,7 @@ void ExpectSomeWithoutProblem(const std::vector<EpisodeSummary>& episodes) {
 }
 
 void Run(const RolloutArguments& arguments) {
+  ExpectMujoco();
   LoadPluginLibrary();
   const std::string folder = FolderOf(arguments.task);
   const Task task = ReadTask(folder);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rollout/installation.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <mujoco/mujoco.h>
@@ -10,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "rollout/mujoco_library.h"
 #include "rollout/mujoco_log.h"
 #include "rollout/osmesa.h"
 #include "rollout/plugin_library.h"
@@ -27,27 +27,22 @@ Finding Compiler() {
 #endif
 }
 
-// The path of the library that holds mj_version in this process.
-std::filesystem::path MujocoLibrary() {
-  Dl_info info;
-  if (dladdr(reinterpret_cast<void*>(&mj_version), &info) == 0 || !info.dli_fname) return {};
-  std::error_code ignored;
-  const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, ignored);
-  return ignored ? std::filesystem::path(info.dli_fname) : file;
-}
-
-Finding Mujoco() {
+// Sets `there` to whether it can be used.
+Finding Mujoco(bool* there) {
   // mjVERSION_HEADER is MMMmmmppp
   constexpr int kHeader = mjVERSION_HEADER;
-  const std::string header =
-      fmt::format("{}.{}.{}", kHeader / 1000000, kHeader / 1000 % 1000, kHeader % 1000);
-  Finding finding{"MuJoCo", fmt::format("{} (headers {}), {}", mj_versionString(), header,
-                                        MujocoLibrary().string())};
+  Finding finding{"MuJoCo", "none"};
   finding.required = true;
-  if (mj_version() != kHeader) {
-    finding.problem = fmt::format(
-        "built for {}, but another version is loaded; rebuild, or correct LD_LIBRARY_PATH", header);
+  try {
+    ExpectMujoco();
+  } catch (const Error& error) {
+    finding.problem = error.what();
+    *there = false;
+    return finding;
   }
+  *there = true;
+  finding.found = fmt::format("{} (headers {}.{}.{}), {}", mj_versionString(), kHeader / 1000000,
+                              kHeader / 1000 % 1000, kHeader % 1000, MujocoLibrary().string());
   return finding;
 }
 
@@ -135,13 +130,12 @@ Finding Processor() {
 }  // namespace
 
 std::vector<Finding> InspectInstallation() {
-  return {{"physpring", PHYSPRING_VERSION},
-          Compiler(),
-          Mujoco(),
-          Plugins(),
-          OffScreenGl(),
-          Processor(),
-          SubstepKernel()};
+  std::vector<Finding> findings{{"physpring", PHYSPRING_VERSION}, Compiler()};
+  bool mujoco = false;
+  findings.push_back(Mujoco(&mujoco));
+  if (mujoco) findings.push_back(Plugins());
+  findings.insert(findings.end(), {OffScreenGl(), Processor(), SubstepKernel()});
+  return findings;
 }
 
 }  // namespace physpring

@@ -96,7 +96,7 @@ class PathSimulatorIn : public PathSimulator {
 
   void AdvanceTo(int frame, const Recording& recording, State* state, Workspace* workspace) const {
     simulator_.AdvanceFrame(RecordedInput(recording, frame, delay_), state, workspace);
-    if (simulator_.Positions(*state).allFinite() && simulator_.Velocities(*state).allFinite()) {
+    if (!IsFarAway(simulator_.Positions(*state)) && simulator_.Velocities(*state).allFinite()) {
       return;
     }
     throw Error(

@@ -52,7 +52,7 @@ class PathSimulator {
   virtual ~PathSimulator() = default;
 
   // The motion along `path`, T frames of 3 x controllers, m. Throws Error, naming the frame, where
-  // it stops being finite. Does not touch the state.
+  // it leaves all bounds (IsFarAway). Does not touch the state.
   virtual PathMotion Roll(const PathStart& start, const std::vector<Points>& path) const = 0;
 
   // Given d loss / d that motion, 3 x nodes a frame; `velocity_bar` may be empty.

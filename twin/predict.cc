@@ -42,7 +42,7 @@ std::vector<Points> Simulate(const Twin& twin, int level, const Recording& recor
     if (attached.any()) attached.nodes = AverageOverMembers(twin, level, attached.nodes);
     simulator.AdvanceFrame(input, &state, &workspace);
     positions.push_back(simulator.Positions(state));
-    if (positions.back().allFinite() && simulator.Velocities(state).allFinite()) continue;
+    if (!IsFarAway(positions.back()) && simulator.Velocities(state).allFinite()) continue;
     throw Error(fmt::format(
         "recording {}: level {} of twin {} diverges in frame {} with {} sub-steps a frame; "
         "more sub-steps are needed",

@@ -28,7 +28,8 @@ void ExpectSameObject(const Twin& twin, const Recording& recording);
 
 // Positions of the level's free nodes in every frame of the recording: T frames of 3 x nodes, m.
 // Nodes of a coarse level start at the mass-weighted means of their members. Throws Error if the
-// recording does not fit the twin, or naming the frame in which the motion stopped being finite.
+// recording does not fit the twin, or naming the frame in which the motion leaves all bounds
+// (IsFarAway).
 std::vector<Points> Predict(const Twin& twin, int level, const Recording& recording,
                             const PredictOptions& options);
 

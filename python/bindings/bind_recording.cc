@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -94,9 +95,9 @@ void BindRecording(nb::module_& module) {
       "up.");
   recording.def_static(
       "load",
-      [](const std::string& path) {
+      [](const std::filesystem::path& path) {
         RecordingEntry entry;
-        entry.path = path;
+        entry.path = path.string();
         return Load(entry);
       },
       nb::arg("path"),
@@ -114,7 +115,10 @@ void BindRecording(nb::module_& module) {
       "and, optional: ground (4,), gravity (3,), rest, interior, velocity, order, held,\n"
       "train_frames, surface, track, force, timestamps ... Raises Error as `load` does.");
   recording.def(
-      "save", [](const Class& self, const std::string& path) { WriteNpz(self.arrays, path); },
+      "save",
+      [](const Class& self, const std::filesystem::path& path) {
+        WriteNpz(self.arrays, path.string());
+      },
       nb::arg("path"),
       "Writes the arrays that it was made of, whole or not at all. The file is the same "
       "recording:\n"

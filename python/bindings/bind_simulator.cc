@@ -193,6 +193,7 @@ void BindSimulator(nb::module_& module) {
       },
       kHasOwner);
   simulator.def("parameters", [](Class& self) { return DictOf(self.Parameters()); });
+  simulator.def("copy", [](const Class& self) { return Class(self); });
   simulator.def("set", &Class::Set, nb::arg("values"));
   simulator.def("roll", &Roll, nb::arg("controllers"), nb::arg("position").none(),
                 nb::arg("velocity").none());

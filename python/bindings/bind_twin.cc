@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -21,9 +22,9 @@ namespace {
 
 using Springs = nb::ndarray<nb::numpy, int>;
 
-GivenTwin LoadTwin(const std::string& path) {
-  GivenTwin given{path, ReadTwin(path)};
-  if (!IsFinished(given.twin)) Warn({path + ": its training is not finished"});
+GivenTwin LoadTwin(const std::filesystem::path& path) {
+  GivenTwin given{path.string(), ReadTwin(path.string())};
+  if (!IsFinished(given.twin)) Warn({given.path + ": its training is not finished"});
   return given;
 }
 
@@ -114,9 +115,9 @@ void BindTwin(nb::module_& module) {
                   "Reads NAME.twin.npz. Raises Error for anything malformed.");
   twin.def(
       "save",
-      [](Class& self, const std::string& path) {
-        WriteTwin(self.twin, path);
-        self.path = path;
+      [](Class& self, const std::filesystem::path& path) {
+        WriteTwin(self.twin, path.string());
+        self.path = path.string();
       },
       nb::arg("path"),
       "Writes NAME.twin.npz, whole or not at all. Raises Error, and writes nothing, for a twin "

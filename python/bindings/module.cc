@@ -10,18 +10,14 @@
 #include "twin/stop_request.h"
 
 namespace physpring {
-namespace {
 
 namespace nb = nanobind;
 
-// The class of our warnings, which is as long-lived as the module.
-PyObject* warning_class = nullptr;
-
-}  // namespace
-
 void Warn(const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  const nb::object warning = nb::module_::import_("physpring._warnings").attr("PhyspringWarning");
   for (const std::string& line : JoinAlike(lines)) {
-    if (PyErr_WarnEx(warning_class, line.c_str(), 1) != 0) throw nb::python_error();
+    if (PyErr_WarnEx(warning.ptr(), line.c_str(), 1) != 0) throw nb::python_error();
   }
 }
 
@@ -31,7 +27,8 @@ NB_MODULE(_core, module) {
   namespace nb = nanobind;
   module.doc() = "The C++ engine of physpring.";
   module.attr("__version__") = PHYSPRING_VERSION;
-  nb::exception<physpring::Error>(module, "Error", PyExc_ValueError);
+  nb::exception<physpring::Error>(module, "Error", PyExc_ValueError).attr("__doc__") =
+      "What is wrong, in one line that says where and what is expected.";
   nb::register_exception_translator(
       [](const std::exception_ptr& thrown, void*) {
         try {
@@ -41,9 +38,6 @@ NB_MODULE(_core, module) {
         }
       },
       nullptr);
-  physpring::warning_class = PyErr_NewExceptionWithDoc(
-      "physpring.PhyspringWarning", "What the user should know.", PyExc_UserWarning, nullptr);
-  module.attr("PhyspringWarning") = nb::borrow(physpring::warning_class);
   module.def(
       "kernel", [] { return std::string(physpring::BestKernel<double>().name); },
       "The instruction set that sub-steps use: 'avx512', 'avx2' or 'scalar'.");

@@ -11,14 +11,14 @@ SI units, z up. Results are those of the program `physpring`, bit for bit. What 
 `physpring.Error`, a ValueError, with the program's line; what you should know is a
 `physpring.PhyspringWarning`.
 """
-from physpring._core import (Error, Level, PhyspringWarning, Recording, SimulatorState, Twin,
-                             __version__, kernel)
+from physpring._core import Error, Level, Recording, SimulatorState, Twin, __version__, kernel
 from physpring._diagnosis import Report, diagnose
 from physpring._evaluation import Evaluation, Track, evaluate, predict, track
 from physpring._export import export
 from physpring._recordings import load_dataset
 from physpring._simulation import Simulator, simulate
 from physpring._training import train
+from physpring._warnings import PhyspringWarning
 
 __all__ = [
     'Error', 'Evaluation', 'Level', 'PhyspringWarning', 'Recording', 'Report', 'Simulator',

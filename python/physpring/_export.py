@@ -61,4 +61,5 @@ def export(twin: _core.Twin | str | os.PathLike,
 def _spec_of(files: dict[str, bytes]) -> mujoco.MjSpec:
     """The scene of an export of one level."""
     import mujoco  # pylint: disable=import-outside-toplevel
-    return mujoco.MjSpec.from_string(files['scene.xml'].decode(), assets=files)
+    scene, = (name for name in files if name.startswith('scene'))
+    return mujoco.MjSpec.from_string(files[scene].decode(), include=files, assets=files)

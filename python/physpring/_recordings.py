@@ -34,7 +34,7 @@ def recordings_of(given: RecordingLike | Iterable[RecordingLike], role: str) -> 
 
 def twin_of(given: _core.Twin | str | os.PathLike) -> _core.Twin:
     """A twin, or that of a file."""
-    return given if isinstance(given, _core.Twin) else _core.Twin.load(os.fspath(given))
+    return given if isinstance(given, _core.Twin) else _core.Twin.load(given)
 
 
 def threads_of(threads: int | None) -> int:

@@ -14,8 +14,21 @@ from physpring._recordings import precision_of, twin_of
 Array = NDArray[np.float64]
 
 
-def _doubles(value: ArrayLike | None) -> Array | None:
-    return None if value is None else np.ascontiguousarray(value, dtype=np.float64)
+def _doubles(name: str, value: ArrayLike | None, dimensions: int) -> Array | None:
+    """An array of doubles in C order. The engine checks its extents."""
+    if value is None:
+        return None
+    try:
+        array = np.ascontiguousarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise _core.Error(f'{name} is no array of numbers: {error}') from None
+    if array.ndim != dimensions:
+        raise _core.Error(f'{name} has shape {array.shape}, expected {dimensions} dimensions')
+    return array
+
+
+def _start(position: ArrayLike | None, velocity: ArrayLike | None) -> tuple[Any, Any]:
+    return _doubles('position', position, 2), _doubles('velocity', velocity, 2)
 
 
 class Simulator:
@@ -47,8 +60,8 @@ class Simulator:
         of_twin = isinstance(ground, str)
         if of_twin and ground != 'twin':
             raise _core.Error(f"ground is {ground!r}, expected four numbers, None or 'twin'")
-        self._core = _core.LevelSimulator(twin_of(twin), level, fps, substeps, _doubles(gravity),
-                                          None if of_twin else _doubles(ground), of_twin,
+        self._core = _core.LevelSimulator(twin_of(twin), level, fps, substeps, _doubles('gravity', gravity, 1),
+                                          None if of_twin else _doubles('ground', ground, 1), of_twin,
                                           precision_of(precision))
         self._state: _core.SimulatorState | None = None
 
@@ -81,7 +94,17 @@ class Simulator:
     def set(self, **parameters: ArrayLike) -> None:
         """Changes some of `parameters()`. Raises Error, and changes none, where one is wrong. The
         state stays."""
-        self._core.set({name: np.atleast_1d(_doubles(value)) for name, value in parameters.items()})
+        self._core.set({name: _doubles(name, np.atleast_1d(np.asarray(value)), 1)
+                        for name, value in parameters.items()})
+
+    def with_parameters(self, **parameters: ArrayLike) -> Simulator:
+        """A copy with some of `parameters()` changed, at its start."""
+        other = Simulator.__new__(Simulator)
+        other._core = self._core.copy()
+        other._state = None
+        if parameters:
+            other.set(**parameters)
+        return other
 
     # frame by frame
 
@@ -94,14 +117,15 @@ class Simulator:
         reference configuration, at rest. controllers: (controllers, 3), default: their reference."""
         if controllers is None:
             controllers = self._core.rest_controllers
-        self._state = self._core.start(_doubles(controllers), _doubles(position), _doubles(velocity))
+        self._state = self._core.start(_doubles('controllers', controllers, 2),
+                                       *_start(position, velocity))
         return self.position
 
     def step(self, controllers: ArrayLike | None = None) -> Array:
         """Goes on by one frame, in which the controllers move to `controllers`, (controllers, 3),
         on straight lines (None: they stay). Returns where the nodes are then, (nodes, 3), m."""
         state = self.state
-        end = state.controllers if controllers is None else _doubles(controllers)
+        end = state.controllers if controllers is None else _doubles('controllers', controllers, 2)
         self._state = self._core.advance(state, end)
         return self.position
 
@@ -137,7 +161,7 @@ class Simulator:
                 velocity: ArrayLike | None = None) -> tuple[Array, Array]:
         """Positions (T, nodes, 3) [m] and velocities [m/s] along the path `controllers`,
         (T, controllers, 3). Frame 0 is the start, as in `reset`. The state is left alone."""
-        return self._core.roll(_doubles(controllers), _doubles(position), _doubles(velocity))
+        return self._core.roll(_doubles('controllers', controllers, 3), *_start(position, velocity))
 
     def vjp(self,
             controllers: ArrayLike,
@@ -150,8 +174,10 @@ class Simulator:
         velocities, (T, nodes, 3) each. A dict: those with respect to all `parameters()`, to the
         start (`position`, `velocity`) and to the path (`controllers`, (T, controllers, 3)). Exact:
         the hand-written adjoint of every sub-step."""
-        return self._core.vjp(_doubles(controllers), _doubles(position_bar), _doubles(velocity_bar),
-                              _doubles(position), _doubles(velocity))
+        return self._core.vjp(_doubles('controllers', controllers, 3),
+                              _doubles('position_bar', position_bar, 3),
+                              _doubles('velocity_bar', velocity_bar, 3),
+                              *_start(position, velocity))
 
 
 def simulate(twin: _core.Twin | str | os.PathLike,

@@ -64,7 +64,9 @@ def train(recordings: RecordingLike | Iterable[RecordingLike],
 
 def in_words_of_python(line: str) -> str:
     """A line of the program with arguments for flags."""
-    return re.sub(r'--([a-z][a-z-]*)', lambda flag: flag[1].replace('-', '_'), line)
+    names = {'from': 'from_twin', 'effects': 'effects_of'}
+    return re.sub(r'--([a-z][a-z-]*)',
+                  lambda flag: names.get(flag[1], flag[1].replace('-', '_')), line)
 
 
 def _json(options: dict[str, Any]) -> str:

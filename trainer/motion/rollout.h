@@ -29,12 +29,6 @@ struct RolloutOptions {
   const std::vector<Points>* kicks = nullptr;
 };
 
-constexpr double kFarAway = 1e3;  // a body that moved this far has diverged, m
-
-inline bool IsFarAway(const Points& position) {
-  return !position.allFinite() || position.cwiseAbs().maxCoeff() > kFarAway;
-}
-
 struct RolloutAdjoint {
   SystemGradient gradient;
   Points velocity_bar;            // d loss / d initial velocity, 3 x nodes
