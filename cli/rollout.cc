@@ -28,7 +28,6 @@
 #include "rollout/mujoco_library.h"
 #include "rollout/plugin_library.h"
 #include "rollout/sweep.h"
-#include "rollout/sweep_folder.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
 
@@ -263,27 +262,6 @@ void AddPictureOptions(CLI::App* command, RolloutArguments* arguments) {
             "of pictures; high: shadows, smooth edges, round shapes");
 }
 
-std::vector<JudgedPolicy> ReadFolders(const std::vector<std::string>& folders) {
-  std::map<std::string, std::size_t> known;  // by identity
-  std::vector<JudgedPolicy> policies;
-  std::set<std::tuple<std::string, int, int>> seen;
-  for (const std::string& folder : folders) {
-    const StoredSweep stored = ReadSweepFolder(folder);
-    const auto [place, added] = known.try_emplace(stored.identity, policies.size());
-    if (added) policies.push_back({stored.task, stored.policy, {}});
-    for (const EpisodeSummary& episode : stored.episodes) {
-      if (!seen.insert({stored.identity, episode.level, episode.episode}).second) continue;
-      policies[place->second].episodes.push_back(episode);
-    }
-  }
-  for (JudgedPolicy& policy : policies) {
-    std::sort(policy.episodes.begin(), policy.episodes.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.episode, a.level) < std::pair(b.episode, b.level);
-    });
-  }
-  return policies;
-}
-
 }  // namespace
 
 void AddRolloutCommand(CLI::App& app) {
@@ -326,7 +304,7 @@ void AddMergeCommand(CLI::App& app) {
   command->add_option("--json", arguments->json, "report to write")->type_name("FILE");
   command->callback([arguments] {
     ExpectOutputs({arguments->json}, {});
-    Report(ReadFolders(arguments->folders), arguments->json);
+    Report(ReadPolicies(arguments->folders), arguments->json);
   });
 }
 

@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "rollout/statistics.h"
+#include "rollout/sweep_folder.h"
 
 namespace physpring {
 namespace {
@@ -227,6 +231,27 @@ std::vector<PolicyResult> CountAll(const std::vector<JudgedPolicy>& policies) {
 }
 
 }  // namespace
+
+std::vector<JudgedPolicy> ReadPolicies(const std::vector<std::string>& folders) {
+  std::map<std::string, std::size_t> known;  // by identity
+  std::vector<JudgedPolicy> policies;
+  std::set<std::tuple<std::string, int, int>> seen;
+  for (const std::string& folder : folders) {
+    const StoredSweep stored = ReadSweepFolder(folder);
+    const auto [place, added] = known.try_emplace(stored.identity, policies.size());
+    if (added) policies.push_back({stored.task, stored.policy, {}});
+    for (const EpisodeSummary& episode : stored.episodes) {
+      if (!seen.insert({stored.identity, episode.level, episode.episode}).second) continue;
+      policies[place->second].episodes.push_back(episode);
+    }
+  }
+  for (JudgedPolicy& policy : policies) {
+    std::sort(policy.episodes.begin(), policy.episodes.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.episode, a.level) < std::pair(b.episode, b.level);
+    });
+  }
+  return policies;
+}
 
 std::string FormatTables(const std::vector<JudgedPolicy>& policies) {
   const std::vector<PolicyResult> results = CountAll(policies);

@@ -16,6 +16,10 @@ struct JudgedPolicy {
   std::vector<EpisodeSummary> episodes;
 };
 
+// The episodes in folders of sweeps (rollout/sweep_folder.h), those of one sweep together, each
+// once. Throws Error for a folder that holds none, or damaged ones.
+std::vector<JudgedPolicy> ReadPolicies(const std::vector<std::string>& folders);
+
 // The tables have a row for each level of each policy. Below, they say how the other levels agree
 // with the lowest and, with two policies or more, how the levels rank them.
 std::string FormatTables(const std::vector<JudgedPolicy>& policies);

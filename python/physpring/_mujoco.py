@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The engine's part that needs MuJoCo: `scenes()`."""
+from __future__ import annotations
+
+import ctypes
+import functools
+import importlib
+import os
+import pathlib
+from typing import Any
+
+from physpring import _core
+from physpring._program import mujoco_library
+
+PLUGIN = pathlib.Path(__file__).parent / 'plugin' / 'libphyspring_plugin.so'
+
+
+@functools.lru_cache(maxsize=None)
+def scenes() -> Any:
+    """The module physpring._scenes, on the MuJoCo of this Python. Raises Error where there is none,
+    or one of another version than 4.0.x."""
+    library = mujoco_library()
+    if library is None:
+        raise _core.Error("MuJoCo is not installed, which this needs: pip install 'physpring[mujoco]'")
+    # MuJoCo's own module first, because it says what MuJoCo does with errors and warnings
+    import mujoco  # pylint: disable=import-outside-toplevel,unused-import # noqa: F401
+    # its functions for all of the process: _scenes is linked with no MuJoCo of one version
+    ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL | os.RTLD_NOLOAD)
+    module = importlib.import_module('physpring._scenes')
+    module.expect_mujoco()
+    module.load_plugin(str(PLUGIN))
+    return module
