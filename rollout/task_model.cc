@@ -150,10 +150,17 @@ TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* w
 }
 
 std::string HashModel(const mjModel& model) {
-  const mjtSize size = mj_sizeModel(&model);
+  // the number of a plugin depends on what else the process has loaded: its name stands for it
+  const ModelPtr copy(mj_copyModel(nullptr, &model));
+  std::string names;
+  for (int i = 0; i < copy->nplugin; ++i) {
+    names += std::string(mjp_getPluginAtSlot(copy->plugin[i])->name) + "\n";
+    copy->plugin[i] = 0;
+  }
+  const mjtSize size = mj_sizeModel(copy.get());
   std::string bytes(static_cast<std::size_t>(size), '\0');
-  mj_saveModel(&model, nullptr, bytes.data(), size);
-  return HashBytes(bytes);
+  mj_saveModel(copy.get(), nullptr, bytes.data(), size);
+  return HashBytes(names + bytes);
 }
 
 std::string FormatSceneFile(const Task& task, int level) {

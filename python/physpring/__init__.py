@@ -15,6 +15,7 @@ from physpring._core import Error, Level, Recording, SimulatorState, Twin, __ver
 from physpring._diagnosis import Report, diagnose
 from physpring._evaluation import Evaluation, Track, evaluate, predict, track
 from physpring._export import export
+from physpring._many import Sweep, sweep, train_many
 from physpring._recordings import load_dataset
 from physpring._simulation import Simulator, simulate
 from physpring._training import train
@@ -22,6 +23,6 @@ from physpring._warnings import PhyspringWarning
 
 __all__ = [
     'Error', 'Evaluation', 'Level', 'PhyspringWarning', 'Recording', 'Report', 'Simulator',
-    'SimulatorState', 'Track', 'Twin', '__version__', 'diagnose', 'evaluate', 'export', 'kernel',
-    'load_dataset', 'predict', 'simulate', 'track', 'train'
+    'SimulatorState', 'Sweep', 'Track', 'Twin', '__version__', 'diagnose', 'evaluate', 'export',
+    'kernel', 'load_dataset', 'predict', 'simulate', 'sweep', 'track', 'train', 'train_many'
 ]

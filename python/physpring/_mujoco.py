@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The engine's part that needs MuJoCo: `scenes()`."""
+"""The engine's part that needs MuJoCo: `scenes()`; and where tasks are."""
 from __future__ import annotations
 
 import ctypes
@@ -13,6 +13,7 @@ from physpring import _core
 from physpring._program import mujoco_library
 
 PLUGIN = pathlib.Path(__file__).parent / 'plugin' / 'libphyspring_plugin.so'
+TASKS = pathlib.Path(__file__).parent / 'tasks'
 
 
 @functools.lru_cache(maxsize=None)
@@ -30,3 +31,9 @@ def scenes() -> Any:
     module.expect_mujoco()
     module.load_plugin(str(PLUGIN))
     return module
+
+
+def task_folder(task: str | os.PathLike) -> pathlib.Path:
+    """The folder of a task: one of this package ('rope_routing'), or your own."""
+    own = pathlib.Path(task)
+    return own if (own / 'task.json').exists() else TASKS / own

@@ -13,7 +13,6 @@ the same. Needs the extra `envs`: pip install 'physpring[envs]'.
 from __future__ import annotations
 
 import os
-import pathlib
 from collections.abc import Sequence
 from typing import Any
 
@@ -24,20 +23,13 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from physpring import _core
-from physpring._mujoco import scenes
+from physpring._mujoco import scenes, task_folder
 from physpring._recordings import threads_of
 
 TASKS = {'RopeRouting': 'rope_routing', 'ToyPacking': 'toy_packing', 'TPush': 't_push',
          'ClothFolding': 'cloth_folding'}
-_FOLDER = pathlib.Path(__file__).parent / 'tasks'
 _REACH = 3.0  # m: bounds of a sampled place; the robot's speed limits what it does
 _FAR = 1e3  # m: what is farther off has diverged
-
-
-def task_folder(task: str | os.PathLike) -> pathlib.Path:
-    """The folder of a task: one of this package ('rope_routing'), or your own."""
-    own = pathlib.Path(task)
-    return own if (own / 'task.json').exists() else _FOLDER / own
 
 
 class _Setting:

@@ -269,5 +269,11 @@ NB_MODULE(_scenes, module) {
              nb::arg("policy"), nb::arg("first"), nb::arg("episodes"), nb::arg("seed"),
              nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"),
              nb::arg("states"));
+  module.def(
+      "is_finished",
+      [](const std::string& folder, int level, int episode) {
+        return ReadEpisode(folder, level, episode).has_value();
+      },
+      nb::arg("folder"), nb::arg("level"), nb::arg("episode"));
   module.def("report", &ReportOn, nb::arg("folders"));
 }
