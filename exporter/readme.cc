@@ -31,7 +31,7 @@ std::string DescribeSprings(const LevelPlan& plan) {
           "Springs and drag are the plugin `physpring.springs`, with sub-steps of at most {:.4g} "
           "ms "
           "(level {}) inside each step of MuJoCo: the plugin library must be loaded first (`import "
-          "mujoco` does so where the package `physpring-mujoco` is installed).",
+          "mujoco` does so where the package `physpring` is installed).",
           1e3 * plan.substep, plan.level);
     case SpringKind::kFlex:
       return "Springs are the edges of 1-D flexes, grouped by stiffness: an approximation of the "

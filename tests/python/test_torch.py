@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
+import importlib.util
+import pathlib
+
 import numpy as np
 import physpring
 import pytest
@@ -39,3 +42,14 @@ def test_leaves_the_simulator_alone(twin, other_recording):
     assert torch.equal(physpring.torch.rollout(simulator, path)[0], before)
     with pytest.raises(physpring.Error, match="'stiff' is no parameter"):
         physpring.torch.rollout(simulator, path, stiff=torch.ones(3))
+
+
+def test_inverse_problem_is_solved():
+    path = pathlib.Path(__file__).parents[2] / 'python' / 'examples' / 'inverse_problem.py'
+    spec = importlib.util.spec_from_file_location('inverse_problem', path)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    before, after, _ = example.solve(seed=5, report=lambda line: None)
+    assert before[0] > 0.3 and before[1] > 0.1
+    assert after[0] < 0.02  # of the stiffness
+    assert after[1] < 0.002  # m/s
