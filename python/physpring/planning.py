@@ -27,6 +27,8 @@ from physpring._simulation import Simulator
 Array = NDArray[np.float64]
 Cost = Callable[[Array], tuple[float, Array]]
 
+_FIRM = 100.0  # weight of penalties against the target
+
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
@@ -129,7 +131,7 @@ class Planner:
                 # from a path straight through them, which they then push aside: one that begins
                 # before them stays there
                 search.obstacles = False
-                first = search.go_from(first)
+                first = search.go_from(first, gain=1e-2, share=0.25)
                 search.obstacles = True
             search.go_from(first)
         self._left = search.best
@@ -231,57 +233,78 @@ class _Search:
         self.best: Array | None = None
         self._best: tuple[float, float, Array, Array, float] | None = None
 
-    def go_from(self, numbers: Array) -> Array:
-        """The best numbers that a descent from these ones finds."""
+    def go_from(self, numbers: Array, gain: float = 1e-7, share: float = 1) -> Array:
+        """The best numbers that a descent from these ones finds, until a step gains a smaller part
+        of the cost, or this share of time and evaluations is up."""
         from scipy.optimize import minimize  # pylint: disable=import-outside-toplevel
         self.best, self._best = None, None  # of other costs
         self.converged = False
+        whole = self._until, self._most
+        self._until = self._began + share * (self._until - self._began)
+        self._most = int(share * self._most)
         try:
             done = minimize(self.cost, numbers.ravel(), jac=True, method='L-BFGS-B',
-                            options={'maxfun': self._most, 'maxiter': self._most, 'maxcor': 20,
-                                     'ftol': 1e-9, 'gtol': 1e-9})
+                            options={'maxfun': whole[1], 'maxiter': whole[1], 'maxcor': 20,
+                                     'ftol': gain, 'gtol': 1e-9})
             self.converged = bool(done.success)
         except _Enough:
             pass
+        self._until, self._most = whole
         assert self.best is not None
         return self.best
 
+    def value(self, flat: Array) -> float:
+        """The cost alone."""
+        moved = self._move(flat)
+        return np.inf if moved is None else self._judge(*moved)[0]
+
     def cost(self, flat: Array) -> tuple[float, Array]:
-        planner = self._planner
-        numbers = flat.reshape(planner._basis.shape[1], -1, 3)
+        """The cost and its derivatives, for L-BFGS."""
         enough = time.perf_counter() > self._until or self.evaluations >= self._most
         if self._best is not None and enough:
             raise _Enough
-        path = planner._path(self._here, numbers)
+        moved = self._move(flat)
+        if moved is None:
+            if self._best is None:
+                raise _core.Error('the motion diverges; more sub-steps are needed')
+            return 1e6 * (1 + abs(self._best[0])), np.zeros_like(flat)
+        numbers, path, _ = moved
+        total, nodes_bar, hands_bar, velocities_bar = self._judge(*moved)
+        planner = self._planner
+        gradient = planner.simulator.vjp(path, nodes_bar, **self._start)
+        bar = planner._path_bar(numbers, gradient['controllers'] + hands_bar)
+        return total, (bar + planner._velocities_bar(numbers, velocities_bar)).ravel()
+
+    def _move(self, flat: Array) -> tuple[Array, Array, Array] | None:
+        """Numbers, path and motion; None where that diverges: such a path is none."""
+        numbers = flat.reshape(self._planner._basis.shape[1], -1, 3)
+        path = self._planner._path(self._here, numbers)
         self.evaluations += 1
         try:
-            position, _ = planner.simulator.rollout(path, **self._start)
-        except _core.Error:  # it diverges: such a path is none
-            if self._best is None:
-                raise
-            return 1e6 * (1 + abs(self._best[0])), np.zeros_like(flat)
-        size = planner._size
-        wanted, position_bar = planner._target(position)
+            return numbers, path, self._planner.simulator.rollout(path, **self._start)[0]
+        except _core.Error:
+            return None
+
+    def _judge(self, numbers: Array, path: Array, position: Array) -> tuple[float, Array, Array, Array]:
+        """The cost, and its derivatives with respect to nodes, hands and velocities."""
+        planner = self._planner
+        unit = planner._size**-2
+        wanted, wanted_bar = planner._target(position)
         stretched, by_nodes, by_hands, most = planner._stretch(position, path)
         hit, hit_nodes = planner._collide(position, self.obstacles)
         hit_hand, hit_hands = planner._collide(path, self.obstacles)
-        velocities = planner._velocities(numbers)
-        change = np.diff(velocities, axis=0) / planner._max_speed
-        jerk = planner._smoothness * float((change**2).sum())
-        total = wanted / size**2 + 100 * stretched + 100 * (hit + hit_hand) / size**2 + jerk
-        gradient = planner.simulator.vjp(
-            path, position_bar / size**2 + 100 * by_nodes + 100 * hit_nodes / size**2, **self._start)
-        bar = planner._path_bar(
-            numbers, gradient['controllers'] + 100 * by_hands + 100 * hit_hands / size**2)
-        velocities_bar = np.zeros_like(velocities)
-        velocities_bar[1:] += change
-        velocities_bar[:-1] -= change
-        bar += planner._velocities_bar(numbers,
-                                       2 * planner._smoothness / planner._max_speed * velocities_bar)
+        change = np.diff(planner._velocities(numbers), axis=0) / planner._max_speed
+        total = (unit * (wanted + _FIRM * (hit + hit_hand)) + _FIRM * stretched +
+                 planner._smoothness * float((change**2).sum()))
         if self._best is None or total < self._best[0]:
             self.best = numbers.copy()
             self._best = (total, wanted, path, position, most)
-        return total, bar.ravel()
+        velocities_bar = np.zeros_like(numbers)
+        velocities_bar[1:] += change
+        velocities_bar[:-1] -= change
+        velocities_bar *= 2 * planner._smoothness / planner._max_speed
+        return (total, unit * (wanted_bar + _FIRM * hit_nodes) + _FIRM * by_nodes,
+                unit * _FIRM * hit_hands + _FIRM * by_hands, velocities_bar)
 
     def plan(self) -> Plan:
         assert self._best is not None
