@@ -14,18 +14,20 @@ import json
 import time
 
 import numpy as np
-
 import physpring
 from physpring.planning import Planner, _Search
 
 
-def cem(planner, position, hands, seconds, seed, population=24, elite=6, keep=0.3):
-    """The best plan of the cross-entropy method over the numbers of the planner's paths."""
+def cem(planner, position, hands, seconds, seed, guess, population=24, elite=6, keep=0.3):
+    """The best plan of the cross-entropy method over the numbers of the planner's paths. `guess`:
+    it begins about the same path as the planner does; else about hands that stay."""
     random = np.random.default_rng(seed)
     search = _Search(planner, hands, {'position': position, 'velocity': None}, np.inf, 10**9)
     size = planner._basis.shape[1] * len(planner._grasps) * 3
-    mean, spread = np.zeros(size), np.full(size, 0.7)
     end = time.perf_counter() + seconds
+    mean, spread = np.zeros(size), np.full(size, 0.7)
+    if guess:
+        mean, spread = search.best_of(planner._guesses(hands, position)).ravel(), 0.4 * np.ones(size)
     while time.perf_counter() < end:
         tried, costs = [], []
         for _ in range(population):
@@ -100,12 +102,15 @@ def main():
         twin = physpring.Twin.load(file)
         planners = list(make(twin, arguments.goals, np.random.default_rng(1)))
         for seconds in arguments.seconds:
-            row = {'task': name, 'seconds': seconds, 'adjoint': [], 'cem': [], 'still': []}
+            row = {'task': name, 'seconds': seconds, 'adjoint': [], 'cem': [], 'cem, guess': [], 'still': []}
             for goal, (planner, position, hands) in enumerate(planners):
                 found = planner.plan(position, hands, seconds=seconds, evaluations=10**6)
-                sampled = cem(planner, position, hands, seconds, goal)
-                still = planner.plan(position, hands, seconds=0)
-                for key, one in (('adjoint', found), ('cem', sampled), ('still', still)):
+                sampled = cem(planner, position, hands, seconds, goal, False)
+                from_guess = cem(planner, position, hands, seconds, goal, True)
+                stay = np.repeat(hands[None], planner.horizon + 1, axis=0)
+                still = planner.plan(position, hands, begin_with=stay, seconds=0)
+                for key, one in (('adjoint', found), ('cem', sampled), ('cem, guess', from_guess),
+                                 ('still', still)):
                     row[key].append({'target': one.target_cost, 'cost': one.cost,
                                      'evaluations': one.evaluations, 'seconds': one.seconds})
             results.append(row)
@@ -114,8 +119,9 @@ def main():
                 f'{np.mean([one["cost"] for one in row[key]]):.4f}, '
                 f'{np.mean([one["evaluations"] for one in row[key]]):.0f} rollouts, '
                 f'{np.mean([one["seconds"] for one in row[key]]):.1f} s'
-                for key in ('adjoint', 'cem', 'still')), flush=True)
-            wins = sum(a['cost'] < b['cost'] for a, b in zip(row['adjoint'], row['cem']))
+                for key in row if key not in ('task', 'seconds')), flush=True)
+            wins = [sum(a['cost'] < b['cost'] for a, b in zip(row['adjoint'], row[other]))
+                    for other in ('cem', 'cem, guess')]
             print(f'  the adjoint has the lower cost for {wins} of {len(planners)} goals', flush=True)
     if arguments.json:
         with open(arguments.json, 'w', encoding='utf-8') as file:

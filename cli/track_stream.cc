@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "jobs/checkpoint.h"
+#include "cli/warnings.h"
 #include "tracker/live_tracker.h"
 #include "twin/error.h"
 

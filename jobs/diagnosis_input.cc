@@ -88,7 +88,7 @@ std::vector<std::string> WarningsOf(const Diagnosis& diagnosis) {
         diagnosis.after.held, diagnosis.motionless));
   }
   if (!diagnosis.effects.empty() && diagnosis.twin.levels.size() > 1) {  // only level 0 is fitted
-    warnings.push_back(
+    warnings.emplace_back(
         "coarse levels have the effects, but are not fitted with them: physpring train --effects "
         "fits a hierarchy");
   }

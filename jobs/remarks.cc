@@ -17,13 +17,13 @@ struct Alike {
 
 }  // namespace
 
-std::vector<std::string> JoinAlike(const std::vector<std::string>& warnings) {
+std::vector<std::string> JoinAlike(const std::vector<std::string>& remarks) {
   std::map<std::string, Alike> files;
   std::vector<std::string> order;
-  for (const std::string& warning : warnings) {
-    const std::size_t colon = std::min(warning.find(": "), warning.size());
-    const std::string what = warning.substr(colon);
-    const std::string file = warning.substr(0, colon);
+  for (const std::string& remark : remarks) {
+    const std::size_t colon = std::min(remark.find(": "), remark.size());
+    const std::string what = remark.substr(colon);
+    const std::string file = remark.substr(0, colon);
     const auto [found, is_new] = files.try_emplace(what, Alike{file, {}});
     if (is_new) order.push_back(what);
     found->second.files.insert(file);

@@ -114,7 +114,8 @@ class ParseVisitor {
     const Json* given = Take(name);
     if (!given) return;
     ratios->clear();
-    for (const Json& ratio : ListOf(name, *given)) {
+    ExpectList(name, *given);
+    for (const Json& ratio : *given) {
       const double value = ratio.is_number() ? ratio.get<double>() : -1;
       if (!(value >= 0 && value <= 1)) Fail(name, ratio, "numbers from 0 to 1");
       ratios->push_back(value);
@@ -129,7 +130,8 @@ class ParseVisitor {
       counts->push_back(Whole(name, *given, 1, 1000));
       return;
     }
-    for (const Json& count : ListOf(name, *given)) {
+    ExpectList(name, *given);
+    for (const Json& count : *given) {
       counts->push_back(Whole(name, count, 1, 1000));
     }
   }
@@ -167,9 +169,8 @@ class ParseVisitor {
     }
     return static_cast<int>(value);
   }
-  static const Json& ListOf(const char* name, const Json& given) {
+  static void ExpectList(const char* name, const Json& given) {
     if (!given.is_array() || given.empty()) Fail(name, given, "a list of numbers");
-    return given;
   }
 
   Json object_;

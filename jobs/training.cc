@@ -172,7 +172,7 @@ FitReport JudgeTraining(const TrainingTask& task, const Twin& twin) {
                            std::vector<std::string>(report.warnings)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());
   }
-  report.warnings = warnings;
+  report.warnings = std::move(warnings);
   return report;
 }
 

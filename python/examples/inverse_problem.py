@@ -15,10 +15,9 @@ import argparse
 import time
 
 import numpy as np
-import torch
-
 import physpring
 import physpring.torch
+import torch
 
 NODES, GAP, FPS, FRAMES = 20, 0.02, 30, 30
 FIELD = 6  # numbers of a field along the rope

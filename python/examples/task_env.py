@@ -18,7 +18,6 @@ import pathlib
 import mujoco
 import numpy as np
 
-
 # As in rollout/pose.cc, operation by operation: a simulation with contacts is only the same in C++ and
 # here if its input is, to the last bit.
 

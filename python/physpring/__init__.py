@@ -11,18 +11,21 @@ SI units, z up. Results are those of the program `physpring`, bit for bit. What 
 `physpring.Error`, a ValueError, with the program's line; what you should know is a
 `physpring.PhyspringWarning`.
 """
-from physpring._core import Error, Level, Recording, SimulatorState, Twin, __version__, kernel
+from physpring import _core
+from physpring._core import Error, Level, Recording, SimulatorState, Twin, kernel
 from physpring._diagnosis import Report, diagnose
 from physpring._evaluation import Evaluation, Track, evaluate, predict, track
 from physpring._export import export
 from physpring._many import Sweep, sweep, train_many
-from physpring._recordings import load_dataset
+from physpring._recordings import load_dataset, record
 from physpring._simulation import Simulator, simulate
 from physpring._training import train
 from physpring._warnings import PhyspringWarning
 
+__version__: str = getattr(_core, '__version__')
+
 __all__ = [
     'Error', 'Evaluation', 'Level', 'PhyspringWarning', 'Recording', 'Report', 'Simulator',
     'SimulatorState', 'Sweep', 'Track', 'Twin', '__version__', 'diagnose', 'evaluate', 'export',
-    'kernel', 'load_dataset', 'predict', 'simulate', 'sweep', 'track', 'train', 'train_many'
+    'kernel', 'load_dataset', 'predict', 'record', 'simulate', 'sweep', 'track', 'train', 'train_many'
 ]

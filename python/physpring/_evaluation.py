@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physpring import _core
-from physpring._recordings import (RecordingLike, precision_of, recordings_of, threads_of, twin_of)
+from physpring._recordings import RecordingLike, precision_of, recordings_of, threads_of, twin_of
 
 Array = NDArray[np.float64]
 

@@ -38,15 +38,14 @@ def export(twin: _core.Twin | str | os.PathLike,
     if folder is None and level is None:
         level = 0
     words = ['physpring', 'export', os.path.basename(given.path)]
-    for flag, value, usual in (('-o', folder, None), ('--level', level, None),
+    for flag, value, usual in (('-o', _base(folder), None), ('--level', level, None),
                                ('--springs', springs, 'auto'),
                                ('--controllers', controllers, 'auto'),
                                ('--contact', contact, 'auto'), ('--flexes', flexes, 8),
-                               ('--timestep', timestep, None), ('--mesh', mesh, None),
+                               ('--timestep', timestep, None), ('--mesh', _base(mesh), None),
                                ('--name', name, None)):
         if value != usual:
-            words += [flag, os.path.basename(os.path.normpath(os.fspath(value)))
-                      if flag in ('-o', '--mesh') else str(value)]
+            words += [flag, str(value)]
     if not 1 <= flexes <= 1000:
         raise _core.Error(f'flexes is {flexes}, expected a whole number from 1 to 1000')
     made = _core.export_twin(given, shlex.join(words), name or '', -1 if level is None else level,
@@ -56,6 +55,11 @@ def export(twin: _core.Twin | str | os.PathLike,
         made.write(os.fspath(folder), force)
         return made.files
     return _spec_of(made.files)
+
+
+def _base(path: str | os.PathLike | None) -> str | None:
+    """What a README says of a path: its last part."""
+    return None if path is None else os.path.basename(os.path.normpath(os.fspath(path)))
 
 
 def _spec_of(files: dict[str, bytes]) -> mujoco.MjSpec:

@@ -14,9 +14,10 @@ from physpring._program import mujoco_library
 
 PLUGIN = pathlib.Path(__file__).parent / 'plugin' / 'libphyspring_plugin.so'
 TASKS = pathlib.Path(__file__).parent / 'tasks'
+OBJECTS = pathlib.Path(__file__).parent / 'objects'
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def scenes() -> Any:
     """The module physpring._scenes, on the MuJoCo of this Python. Raises Error where there is none,
     or one of another version than 4.0.x."""
@@ -24,7 +25,7 @@ def scenes() -> Any:
     if library is None:
         raise _core.Error("MuJoCo is not installed, which this needs: pip install 'physpring[mujoco]'")
     # MuJoCo's own module first, because it says what MuJoCo does with errors and warnings
-    import mujoco  # pylint: disable=import-outside-toplevel,unused-import # noqa: F401
+    import mujoco  # pylint: disable=import-outside-toplevel,unused-import
     # its functions for all of the process: _scenes is linked with no MuJoCo of one version
     ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL | os.RTLD_NOLOAD)
     module = importlib.import_module('physpring._scenes')

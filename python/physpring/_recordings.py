@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+import pathlib
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Union
 
 from physpring import _core
@@ -17,6 +19,35 @@ def load_dataset(*paths: str | os.PathLike, role: str = 'fit') -> list[_core.Rec
     role: of a folder's recordings, 'fit' for those to train on, 'heldout' for those to judge by.
     """
     return _core.load_dataset([os.fspath(path) for path in paths], role)
+
+
+def record(scene: str | os.PathLike,
+           output: str | os.PathLike | None = None,
+           *,
+           noise: float = 0,
+           occlusion: float = 0,
+           vary: float = 0,
+           seed: int = 0,
+           duration: float | None = None,
+           fps: float = 30,
+           effects: Mapping[str, float] | None = None) -> _core.Recording:
+    """What a camera would measure of a soft body that MuJoCo simulates, as `physpring record` does.
+
+    scene: MJCF with one soft body that mocap bodies move along the scene's keyframes
+        (docs/record.md); or 'rope', 'cloth', 'block', 'cord', those of this package.
+    output: file to write as well, NAME.npz.
+    noise: standard deviation of each coordinate, m. occlusion: part of the points that is hidden in
+    each frame. vary: keyframes are shifted by up to this, m: another motion for each seed. effects:
+    what the scene gets, too, without a word in the recording: {'air_drag.wind_y_m_per_s': 2}.
+    """
+    from physpring._mujoco import OBJECTS, scenes  # pylint: disable=import-outside-toplevel
+    own = pathlib.Path(scene)
+    path = own if own.exists() else OBJECTS / f'{own}.xml'
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / f'{own.stem}.npz' if output is None else pathlib.Path(output)
+        scenes().record(os.fspath(path), os.fspath(file), noise, occlusion, vary, seed, duration, fps,
+                        dict(effects or {}))
+        return _core.Recording.load(file)
 
 
 def recordings_of(given: RecordingLike | Iterable[RecordingLike], role: str) -> list[_core.Recording]:

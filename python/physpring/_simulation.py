@@ -14,10 +14,8 @@ from physpring._recordings import precision_of, twin_of
 Array = NDArray[np.float64]
 
 
-def _doubles(name: str, value: ArrayLike | None, dimensions: int) -> Array | None:
+def _doubles(name: str, value: ArrayLike, dimensions: int) -> Array:
     """An array of doubles in C order. The engine checks its extents."""
-    if value is None:
-        return None
     try:
         array = np.ascontiguousarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -27,8 +25,13 @@ def _doubles(name: str, value: ArrayLike | None, dimensions: int) -> Array | Non
     return array
 
 
+def _given(name: str, value: ArrayLike | None, dimensions: int) -> Array | None:
+    """The same of what may be missing."""
+    return None if value is None else _doubles(name, value, dimensions)
+
+
 def _start(position: ArrayLike | None, velocity: ArrayLike | None) -> tuple[Any, Any]:
-    return _doubles('position', position, 2), _doubles('velocity', velocity, 2)
+    return _given('position', position, 2), _given('velocity', velocity, 2)
 
 
 class Simulator:
@@ -60,8 +63,9 @@ class Simulator:
         of_twin = isinstance(ground, str)
         if of_twin and ground != 'twin':
             raise _core.Error(f"ground is {ground!r}, expected four numbers, None or 'twin'")
-        self._core = _core.LevelSimulator(twin_of(twin), level, fps, substeps, _doubles('gravity', gravity, 1),
-                                          None if of_twin else _doubles('ground', ground, 1), of_twin,
+        self._core = _core.LevelSimulator(twin_of(twin), level, fps, substeps,
+                                          _given('gravity', gravity, 1),
+                                          None if of_twin else _given('ground', ground, 1), of_twin,
                                           precision_of(precision))
         self._state: _core.SimulatorState | None = None
 
@@ -176,7 +180,7 @@ class Simulator:
         the hand-written adjoint of every sub-step."""
         return self._core.vjp(_doubles('controllers', controllers, 3),
                               _doubles('position_bar', position_bar, 3),
-                              _doubles('velocity_bar', velocity_bar, 3),
+                              _given('velocity_bar', velocity_bar, 3),
                               *_start(position, velocity))
 
 

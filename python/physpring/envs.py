@@ -19,7 +19,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
-from gymnasium.vector.utils import batch_space
+from gymnasium.vector.utils import batch_space, concatenate, create_empty_array
 from numpy.typing import NDArray
 
 from physpring import _core
@@ -108,7 +108,7 @@ class TaskEnv(gymnasium.Env):
     reset(options={'episode': k}) begins episode k; {'position': .., 'quaternion': ..} puts the
     object there.
     """
-    metadata = {'render_modes': ['rgb_array'], 'render_fps': 30}
+    metadata: dict[str, Any] = {'render_modes': ['rgb_array'], 'render_fps': 30}
 
     def __init__(self,
                  task: str | os.PathLike,
@@ -141,7 +141,7 @@ class TaskEnv(gymnasium.Env):
         options = options or {}
         unknown = set(options) - {'episode', 'position', 'quaternion'}
         if unknown:
-            raise _core.Error(f'reset knows no option {sorted(unknown)[0]!r}; there are episode, '
+            raise _core.Error(f'reset knows no option {min(unknown)!r}; there are episode, '
                               'position, quaternion')
         if 'position' in options:
             self._scene.reset_at(np.asarray(options['position'], float),
@@ -185,7 +185,8 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
     """Many environments of one task, stepped side by side on threads of this process. Arguments are
     those of TaskEnv; `threads`: at most so many, None: all cores. After an episode has ended, the
     next step begins the next one (AutoresetMode.NEXT_STEP)."""
-    metadata = {'render_modes': [], 'render_fps': 30,
+    metadata: dict[str, Any] = {'render_modes': [],
+                'render_fps': 30,
                 'autoreset_mode': gymnasium.vector.AutoresetMode.NEXT_STEP}
 
     def __init__(self,
@@ -254,9 +255,8 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
 
     def _observe(self) -> Any:
         seen = [self._setting.observe(scene) for scene in self._scenes]
-        return gymnasium.vector.utils.concatenate(
-            self.single_observation_space, seen,
-            gymnasium.vector.utils.create_empty_array(self.single_observation_space, self.num_envs))
+        together: Any = create_empty_array(self.single_observation_space, self.num_envs)
+        return concatenate(self.single_observation_space, seen, together)
 
     def _inform(self) -> dict[str, Any]:
         infos: dict[str, Any] = {}

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from physpring import _core
-from physpring._simulation import Simulator
+from physpring._simulation import Simulator, _start
 
 Array = NDArray[np.float64]
 Cost = Callable[[Array], tuple[float, Array]]
@@ -78,6 +78,7 @@ class Planner:
             raise _core.Error('one of target_points and target_cost is needed')
         if horizon < 1 or knots < 1 or not max_speed > 0:
             raise _core.Error('horizon and knots are 1 or more, and max_speed is above 0')
+        self._goals: tuple[Array, Array] | None = None  # nodes, and where they should be
         self._target = target_cost or self._towards(np.asarray(target_points, float), target_nodes)
         self.horizon = horizon
         self._basis = _hat_functions(horizon, min(knots, horizon))
@@ -97,6 +98,8 @@ class Planner:
             raise _core.Error(f'target_points has shape {target.shape}, expected one row of three '
                               'for each target node')
         wanted = np.isfinite(target)
+        whole = wanted.all(axis=1)
+        self._goals = which[whole], target[whole]
         goal = np.where(wanted, target, 0)
 
         def cost(position: Array) -> tuple[float, Array]:
@@ -126,7 +129,7 @@ class Planner:
         if begin_with is not None:
             search.go_from(self._fitted(begin_with))
         else:
-            first = np.zeros((self._basis.shape[1], len(self._grasps), 3))
+            first = search.best_of(self._guesses(here, search.position))
             if len(self._obstacles) > 0:
                 # from a path straight through them, which they then push aside: one that begins
                 # before them stays there
@@ -145,6 +148,29 @@ class Planner:
         moved = self._path(np.asarray(controllers, float), self._left)
         shifted = np.concatenate([moved[frames:], np.repeat(moved[-1:], frames, axis=0)])
         return self.plan(position, controllers, begin_with=shifted, **how)
+
+    def _guesses(self, here: Array, position: Array) -> list[Array]:
+        """Paths to begin with, as numbers: hands that stay; that carry what they are nearest to
+        straight to its place; that do so in an arc, against gravity."""
+        still = np.zeros((self._basis.shape[1], len(self._grasps), 3))
+        if self._goals is None or len(self._goals[0]) == 0:
+            return [still]
+        nodes, goals = self._goals
+        share = np.linspace(0, 1, self.horizon + 1)
+        up = -self.simulator.parameters()['gravity']
+        up = up / max(np.linalg.norm(up), 1e-12)
+        guesses = [still]
+        for height in (0.0, 0.5):
+            path = np.repeat(here[None], self.horizon + 1, axis=0)
+            for of_grasp in self._grasps:
+                away = np.linalg.norm(position[nodes] - here[of_grasp].mean(axis=0), axis=1)
+                near = np.argsort(away)[:3]
+                way = (goals[near] - position[nodes[near]]).mean(axis=0)
+                arc = height * np.linalg.norm(way) * up
+                path[:, of_grasp] += (share[:, None] * way +
+                                      np.sin(np.pi * share)[:, None] * arc)[:, None]
+            guesses.append(self._fitted(path))
+        return guesses
 
     # between numbers without bounds, velocities, and paths
 
@@ -232,6 +258,18 @@ class _Search:
         self.obstacles = True  # whether they count
         self.best: Array | None = None
         self._best: tuple[float, float, Array, Array, float] | None = None
+
+    @property
+    def position(self) -> Array:
+        """(nodes, 3) where they are at the start."""
+        return self._planner.simulator._core.nodes(self._planner.simulator._core.start(
+            self._here, *_start(self._start['position'], None)))[0]
+
+    def best_of(self, guesses: Sequence[Array]) -> Array:
+        """The one with the least cost."""
+        if len(guesses) == 1:
+            return guesses[0]
+        return guesses[int(np.argmin([self.value(guess.ravel()) for guess in guesses]))]
 
     def go_from(self, numbers: Array, gain: float = 1e-7, share: float = 1) -> Array:
         """The best numbers that a descent from these ones finds, until a step gains a smaller part

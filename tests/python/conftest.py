@@ -7,9 +7,8 @@ import subprocess
 import sys
 
 import numpy as np
-import pytest
-
 import physpring
+import pytest
 
 FPS = 30
 NODES = 10

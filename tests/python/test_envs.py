@@ -10,8 +10,8 @@ from physpring._mujoco import task_folder
 
 gymnasium = pytest.importorskip('gymnasium')
 pytest.importorskip('mujoco')
-import physpring.envs  # noqa: E402  pylint: disable=wrong-import-position
-from gymnasium.utils import env_checker  # noqa: E402  pylint: disable=wrong-import-position
+import physpring.envs
+from gymnasium.utils import env_checker
 
 NAMES = list(physpring.envs.TASKS)
 

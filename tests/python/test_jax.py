@@ -4,7 +4,7 @@ import physpring
 import pytest
 
 jax = pytest.importorskip('jax')
-import physpring.jax  # noqa: E402  pylint: disable=wrong-import-position
+import physpring.jax
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ import pytest
 from conftest import NODES
 
 pytest.importorskip('scipy')
-from physpring.planning import Planner, plan  # noqa: E402  pylint: disable=wrong-import-position
+from physpring.planning import Planner, plan
 
 
 @pytest.fixture(name='hanging', scope='module')
@@ -75,9 +75,10 @@ def test_goes_on_from_what_is_left(twin, hanging):
     planner = Planner(twin, target_points=end_at(position[-1] + [0.15, 0, 0.1]), horizon=40)
     first = planner.plan(position, hand)
     ahead = planner.replan(first.position[1], first.controllers[1], frames=1, evaluations=1)
-    anew = planner.plan(first.position[1], first.controllers[1], evaluations=1)
+    still = np.repeat(first.controllers[1][None], 41, axis=0)
+    anew = planner.plan(first.position[1], first.controllers[1], begin_with=still, evaluations=1)
     assert ahead.target_cost < 0.1 * anew.target_cost
-    assert planner.plan(position, hand, seconds=0).evaluations == 1  # one in any case
+    assert planner.plan(position, hand, seconds=0).evaluations <= 4  # its guesses, in any case
 
 
 def test_takes_a_cost_of_ones_own(twin, hanging):

@@ -4,7 +4,7 @@ import warnings
 import numpy as np
 import physpring
 import pytest
-from conftest import FPS, NODES, swing
+from conftest import FPS, NODES, expect_same_arrays, run_program, swing
 
 
 def test_is_made_of_arrays(recording):
@@ -81,3 +81,22 @@ def test_load_says_which_file(tmp_path):
         physpring.load_dataset(broken)
     with pytest.raises(physpring.Error, match='role'):
         physpring.load_dataset(broken, role='test')
+
+
+def test_records_what_the_program_does(tmp_path):
+    pytest.importorskip('mujoco')
+    from physpring._mujoco import OBJECTS
+    effects = {'air_drag.drag_kg_per_m': 0.02, 'air_drag.wind_y_m_per_s': 2}
+    ours = physpring.record('cord', tmp_path / 'ours.npz', noise=1e-3, seed=3, vary=0.05, fps=50,
+                            effects=effects)
+    run_program('record', OBJECTS / 'cord.xml', '-o', tmp_path / 'theirs.npz', '--noise', 1e-3, '--seed',
+                3, '--vary', 0.05, '--fps', 50, *(word for key, value in effects.items()
+                                                 for word in ('--effect', f'{key}={value}')))
+    expect_same_arrays(tmp_path / 'ours.npz', tmp_path / 'theirs.npz')
+    assert np.array_equal(physpring.record('cord', seed=1).points,
+                          physpring.record(OBJECTS / 'cord.xml', seed=1).points)
+    assert ours.name == 'ours'
+    with pytest.raises(physpring.Error, match='snake'):
+        physpring.record('snake')
+    with pytest.raises(physpring.Error, match='storm'):
+        physpring.record('cord', effects={'storm': 1})

@@ -7,7 +7,7 @@ import physpring
 import pytest
 
 torch = pytest.importorskip('torch')
-import physpring.torch  # noqa: E402  pylint: disable=wrong-import-position
+import physpring.torch
 
 
 def test_gradcheck(twin, other_recording):

@@ -50,7 +50,8 @@ def main(dist, environment, *packages):
         skip('python3-venv or PyPI is out of reach')
     test(python, ['test_recording.py', 'test_training.py', 'test_simulator.py', 'test_package.py'])
     try:
-        run(*pip, f'{wheel}[mujoco,envs,plan]', 'distributed', *packages)
+        run(*pip, f'{wheel}[mujoco,envs,plan]', 'distributed', 'nbclient',
+            'ipykernel', 'matplotlib', *packages)
     except subprocess.CalledProcessError:
         skip('MuJoCo or Gymnasium are out of reach')
     test(python, ['.'])

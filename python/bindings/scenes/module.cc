@@ -2,6 +2,8 @@
 // The module physpring._scenes: what needs MuJoCo. Its functions are those of the library that the
 // process has opened for all (physpring/_mujoco.py), so it is for any 4.0.x.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -12,6 +14,7 @@
 #include "report/rollout_report.h"
 #include "rollout/mujoco_library.h"
 #include "rollout/plugin_library.h"
+#include "rollout/record.h"
 #include "rollout/sweep.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/error.h"
@@ -236,6 +239,15 @@ nb::tuple ReportOn(const std::vector<std::string>& folders) {
   return nb::make_tuple(FormatJson(policies), FormatTables(policies));
 }
 
+void Record(const std::string& scene, const std::string& output, double noise, double occlusion,
+            double vary, std::uint64_t seed, std::optional<double> duration, double fps,
+            const std::map<std::string, double>& effects) {
+  ExpectMujoco();
+  WriteRecording(
+      RecordScene(scene, {noise, occlusion, vary, seed, duration, fps, SceneEffects(effects)}),
+      output);
+}
+
 }  // namespace
 }  // namespace physpring
 
@@ -261,6 +273,9 @@ NB_MODULE(_scenes, module) {
   module.def("load_plugin", [](const std::string& file) { LoadPluginLibrary(file); });
   BindTask(module);
   BindScene(module);
+  module.def("record", &Record, nb::arg("scene"), nb::arg("output"), nb::arg("noise"),
+             nb::arg("occlusion"), nb::arg("vary"), nb::arg("seed"), nb::arg("duration").none(),
+             nb::arg("fps"), nb::arg("effects"), nb::call_guard<nb::gil_scoped_release>());
   module.def("step_all", &StepAll, nb::arg("scenes"), nb::arg("actions"), nb::arg("threads"));
   module.def("reset_all", &ResetAll, nb::arg("scenes"), nb::arg("seeds"), nb::arg("episodes"),
              nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"),
