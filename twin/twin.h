@@ -87,6 +87,10 @@ Twin ReadTwin(const std::string& path);
 // The same for arrays already in memory; `path` begins the messages.
 Twin ParseTwin(const Npz& arrays, const std::string& path);
 
+// The arrays of its file. Throws Error, which begins with `path`, for a twin that ReadTwin would
+// refuse.
+Npz CheckedArraysOf(const Twin& twin, const std::string& path);
+
 // Writes atomically: the file at `path` is the old one or the new one, whatever happens. Throws
 // Error for a twin that ReadTwin would refuse (a level without springs or without
 // substeps_per_second, an assignment that is not onto, ...), and then writes nothing.

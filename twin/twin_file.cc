@@ -343,10 +343,14 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
 
 Twin ReadTwin(const std::string& path) { return ParseTwin(ReadNpz(path), path); }
 
+Npz CheckedArraysOf(const Twin& twin, const std::string& path) {
+  Npz arrays = StoreTwin(twin, path);
+  ParseTwin(arrays, path);
+  return arrays;
+}
+
 void WriteTwin(const Twin& twin, const std::string& path) {
-  const Npz arrays = StoreTwin(twin, path);
-  ParseTwin(arrays, path);  // what the reader would refuse is not written
-  WriteNpz(arrays, path);
+  WriteNpz(CheckedArraysOf(twin, path), path);  // what the reader would refuse is not written
 }
 
 }  // namespace physpring

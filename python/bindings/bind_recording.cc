@@ -176,6 +176,25 @@ void BindRecording(nb::module_& module) {
         return CopyOf(Eigen::VectorXd(*self.recording.ground));
       },
       "(4,) a, b, c, d of the plane a x + b y + c z = d, or None.", kHasOwner);
+  recording.def("__getstate__", [](const Class& self) {
+    const std::string file = PackNpz(self.arrays, self.entry.path);
+    return nb::make_tuple(self.entry.path, self.entry.heldout, self.entry.continuous_recording,
+                          self.entry.published_l1, self.recording.hash,
+                          nb::bytes(file.data(), file.size()));
+  });
+  recording.def("__setstate__", [](Class& self, const nb::tuple& parts) {
+    RecordingEntry entry;
+    entry.path = nb::cast<std::string>(parts[0]);
+    entry.heldout = nb::cast<bool>(parts[1]);
+    entry.continuous_recording = nb::cast<int>(parts[2]);
+    entry.published_l1 = nb::cast<bool>(parts[3]);
+    const auto file = nb::cast<nb::bytes>(parts[5]);
+    Npz arrays = ParseNpz(std::string(file.c_str(), file.size()), entry.path);
+    new (&self) Class(Given(std::move(entry), std::move(arrays)));
+    self.recording.hash = nb::cast<std::string>(parts[4]);
+  });
+  recording.def("__copy__", [](const Class& self) { return Class(self); });
+  recording.def("__deepcopy__", [](const Class& self, const nb::dict&) { return Class(self); });
   recording.def("__len__", [](const Class& self) { return self.recording.frame_count(); });
   recording.def("__repr__", &ReprOfRecording);
   module.def("load_dataset", &LoadDataset, nb::arg("paths"), nb::arg("role"));

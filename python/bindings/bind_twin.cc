@@ -196,6 +196,18 @@ void BindTwin(nb::module_& module) {
       nb::arg("level"), nb::arg("start"), nb::arg("nodes"),
       "(T, nodes of level 0, 3) level 0's particles as the nodes of `level` carry them along.\n"
       "`start`: (nodes of level 0, 3) where they start; `nodes`: (T, nodes of the level, 3).");
+  twin.def("__getstate__", [](const Class& self) {
+    const std::string file = PackNpz(CheckedArraysOf(self.twin, self.path), self.path);
+    return nb::make_tuple(self.path, nb::bytes(file.data(), file.size()));
+  });
+  twin.def("__setstate__", [](Class& self, const nb::tuple& parts) {
+    const auto path = nb::cast<std::string>(parts[0]);
+    const auto file = nb::cast<nb::bytes>(parts[1]);
+    new (&self)
+        Class{path, ParseTwin(ParseNpz(std::string(file.c_str(), file.size()), path), path)};
+  });
+  twin.def("__copy__", [](const Class& self) { return Class(self); });
+  twin.def("__deepcopy__", [](const Class& self, const nb::dict&) { return Class(self); });
   twin.def("__repr__", &ReprOfTwin);
   twin.def("__str__", [](const Class& self) { return DescribeTwin(self.twin); });
 }

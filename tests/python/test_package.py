@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
+import copy
 import importlib.metadata
 import importlib.util
 import pathlib
+import pickle
 import subprocess
 import sys
 
+import numpy as np
 import physpring
 import pytest
 from conftest import run_program
@@ -53,3 +56,18 @@ def test_asks_for_mujoco_where_it_is_missing(tmp_path):
     done = run_program('record', 'scene.xml', '-o', tmp_path / 'a.npz', check=False)
     assert done.returncode == 1
     assert "pip install 'physpring[mujoco]'" in done.stderr
+
+
+def test_things_are_pickled_and_copied(twin, recording):
+    for duplicate in (lambda thing: pickle.loads(pickle.dumps(thing)), copy.copy, copy.deepcopy):
+        other = duplicate(recording)
+        assert (other.hash, other.name, other.path) == (recording.hash, recording.name, recording.path)
+        assert np.array_equal(other.points, recording.points)
+        again = duplicate(twin)
+        assert np.array_equal(again.levels[1].stiffness, twin.levels[1].stiffness)
+        again.levels[0].mass[:] = 1
+        assert twin.levels[0].mass[0] != 1
+    broken = twin.copy()
+    broken.levels[0].mass[:] = -1
+    with pytest.raises(physpring.Error, match='mass'):
+        pickle.dumps(broken)
