@@ -6,10 +6,8 @@
 #include "rollout/stopwatch.h"
 
 namespace physpring {
-namespace {
 
-// Throws PolicyError unless the simulation can follow it.
-void CheckAction(const Eigen::VectorXd& action, const RobotOptions& robot) {
+void ExpectAction(const Eigen::VectorXd& action, const RobotOptions& robot) {
   if (action.size() != robot.action_size()) {
     throw PolicyError(fmt::format("the policy's action has {} numbers, expected {}", action.size(),
                                   robot.action_size()));
@@ -22,8 +20,6 @@ void CheckAction(const Eigen::VectorXd& action, const RobotOptions& robot) {
   throw PolicyError(fmt::format("the policy's action has a quaternion of length {:.3g}", norm));
 }
 
-}  // namespace
-
 void SteppedEpisode::Begin() {
   {
     const Stopwatch watch(&result_.seconds.physics);
@@ -34,7 +30,7 @@ void SteppedEpisode::Begin() {
 
 void SteppedEpisode::Step(const Eigen::VectorXd& action) {
   const RobotOptions& robot = model_.task->robot;
-  CheckAction(action, robot);
+  ExpectAction(action, robot);
   Eigen::VectorXd moved = action;
   if (robot.kind == RobotKind::kCartesian) {
     moved.head<3>() += result_.episode.start.action_offset;

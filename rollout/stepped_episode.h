@@ -9,6 +9,10 @@
 
 namespace physpring {
 
+// Throws PolicyError for an action that cannot be followed: of another length, not finite, or whose
+// quaternion is near zero.
+void ExpectAction(const Eigen::VectorXd& action, const RobotOptions& robot);
+
 class SteppedEpisode {
  public:
   // The model, the simulation of it and `result`, to which everything is added, live longer.
@@ -18,9 +22,8 @@ class SteppedEpisode {
   // Puts object and robot where the result's start has them.
   void Begin();
 
-  // Goes on by one frame with what a policy asked for. Throws PolicyError, and changes nothing, for
-  // an action that cannot be followed: of another length, not finite, or whose quaternion is near
-  // zero. Throws Error where the simulation is unstable.
+  // Goes on by one frame with what a policy asked for. Throws PolicyError, and changes nothing, as
+  // ExpectAction does. Throws Error where the simulation is unstable.
   void Step(const Eigen::VectorXd& action);
 
   // What is seen now, without images.

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "twin/effects/effect_set.h"
 #include "twin/error.h"
 #include "twin/recorded_input.h"
@@ -24,7 +27,8 @@ class PathSimulatorIn : public PathSimulator {
  public:
   PathSimulatorIn(const SpringMassSystem& system, const Environment& environment,
                   const PathOptions& options)
-      : fps_(options.fps),
+      : controllers_(system.controllers),
+        fps_(options.fps),
         delay_(ControllerDelay(system)),
         gradient_(system),
         simulator_(system, environment,
@@ -72,7 +76,18 @@ class PathSimulatorIn : public PathSimulator {
   }
 
   PathState MakeState(const PathStart& start, const Points& controllers) const override {
-    return {Pack(simulator_.MakeState(start.position, start.velocity)), {controllers}};
+    return {fps_, Pack(simulator_.MakeState(start.position, start.velocity)), {controllers}};
+  }
+
+  void ExpectOwn(const PathState& state) const override {
+    const Points none = Points::Zero(3, simulator_.node_count());
+    const std::size_t size = 8 * simulator_.MakeState(none, none).size();
+    const auto is_own = [&](const Points& controllers) {
+      return controllers.cols() == controllers_;
+    };
+    const bool right = state.fps == fps_ && state.nodes.size() == size && !state.path.empty() &&
+                       std::all_of(state.path.begin(), state.path.end(), is_own);
+    if (!right) throw Error("the state is that of a simulator of another level or other frames");
   }
 
   void Advance(const Points& controllers, PathState* state) const override {
@@ -82,7 +97,7 @@ class PathSimulatorIn : public PathSimulator {
     Workspace workspace(simulator_);
     State nodes = Unpack(state->nodes);
     AdvanceTo(frame, RecordingOf(path, fps_), &nodes, &workspace);
-    *state = {Pack(nodes), std::move(path)};
+    *state = {fps_, Pack(nodes), std::move(path)};
   }
 
   PathStart Of(const PathState& state) const override {
@@ -133,6 +148,7 @@ class PathSimulatorIn : public PathSimulator {
     return state;
   }
 
+  int controllers_;
   double fps_, delay_;       // delay: how late the controllers are, s
   SystemGradient gradient_;  // zero, of the right shapes
   Simulator<Real> simulator_;

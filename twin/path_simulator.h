@@ -43,6 +43,7 @@ struct PathGradient {
 // Between two frames: the state of the nodes and of effects, and the path so far. To go on from
 // elsewhere, or again.
 struct PathState {
+  double fps = 0;             // of the simulator
   std::vector<double> nodes;  // as the simulator has them
   std::vector<Points> path;   // frames of 3 x controllers, the last one is now
 };
@@ -62,6 +63,8 @@ class PathSimulator {
 
   // A state at the start of a path.
   virtual PathState MakeState(const PathStart& start, const Points& controllers) const = 0;
+  // Throws Error unless the state is of a simulator of this level and these frames.
+  virtual void ExpectOwn(const PathState& state) const = 0;
   // One frame, in which the controllers go to `controllers`. Throws Error as Roll does.
   virtual void Advance(const Points& controllers, PathState* state) const = 0;
   virtual PathStart Of(const PathState& state) const = 0;

@@ -13,14 +13,14 @@
 namespace physpring {
 namespace {
 
-// An array that owns `numbers`.
-template <class Number>
-nb::ndarray<nb::numpy, Number> Give(std::vector<Number> numbers, std::vector<std::size_t> shape) {
+// An array that owns `numbers`; read-only if Kept is const.
+template <class Number, class Kept = Number>
+nb::ndarray<nb::numpy, Kept> Give(std::vector<Number> numbers, std::vector<std::size_t> shape) {
   auto kept = std::make_unique<std::vector<Number>>(std::move(numbers));
   Number* const data = kept->data();
   const nb::capsule owner(
       kept.release(), [](void* mine) noexcept { delete static_cast<std::vector<Number>*>(mine); });
-  return nb::ndarray<nb::numpy, Number>(data, shape.size(), shape.data(), owner);
+  return nb::ndarray<nb::numpy, Kept>(data, shape.size(), shape.data(), owner);
 }
 
 template <std::size_t kDimensions>
@@ -55,6 +55,10 @@ NumpyDoubles CopyOf(const std::vector<double>& numbers) { return Give(numbers, {
 
 nb::ndarray<nb::numpy, int> CopyOf(const std::vector<int>& numbers) {
   return Give(numbers, {numbers.size()});
+}
+
+nb::ndarray<nb::numpy, const int> FrozenCopyOf(const std::vector<int>& numbers) {
+  return Give<int, const int>(numbers, {numbers.size()});
 }
 
 NumpyDoubles CopyOf(const std::vector<Points>& frames) {

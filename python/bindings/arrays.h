@@ -34,6 +34,9 @@ NumpyDoubles CopyOf(const std::vector<double>& numbers);  // (n)
 nb::ndarray<nb::numpy, int> CopyOf(const std::vector<int>& numbers);
 nb::object CopyOf(const NpzArray& array);  // of its own type
 
+// A copy that nobody writes to, so that nobody takes it for a view.
+nb::ndarray<nb::numpy, const int> FrozenCopyOf(const std::vector<int>& numbers);
+
 // Views, which keep `owner` alive.
 NumpyDoubles ViewOf(Points* points, nb::handle owner);            // (N, 3)
 NumpyDoubles ViewOf(Eigen::VectorXd* numbers, nb::handle owner);  // (n)

@@ -42,6 +42,7 @@ Finding DiagnoseAll(const GivenTwin& twin, const Recordings& fit, const Recordin
                     const Recordings& before, std::uint64_t seed, int threads,
                     const nb::object& callback) {
   if (fit.empty()) throw Error("no recording is given");
+  Checked(twin);
   std::vector<RecordingEntry> entries;
   std::vector<Recording> to_fit;
   for (const GivenRecording* one : fit) {

@@ -30,6 +30,7 @@ Recording RecordingFor(const Twin& twin, const GivenRecording& given) {
 Evaluation EvaluateAll(const GivenTwin& twin, const std::vector<const GivenRecording*>& recordings,
                        const EvaluationOptions& options, int threads) {
   if (recordings.empty()) throw Error("no recording is given");
+  Checked(twin);
   Evaluation evaluation{twin.path, twin.twin, options.predict.single_precision, options.anchor, {}};
   const int count = static_cast<int>(recordings.size());
   evaluation.recordings.resize(recordings.size());
@@ -61,7 +62,7 @@ const LevelResult& ResultOf(const Evaluation& evaluation, std::size_t recording,
 
 NumpyDoubles PredictNodes(const GivenTwin& twin, const GivenRecording& given, int level,
                           std::optional<int> substeps, bool single_precision) {
-  Recording recording = RecordingFor(twin.twin, given);
+  Recording recording = RecordingFor(Checked(twin), given);
   ExpectSameObject(twin.twin, recording);
   const Twin held = HeldAsIn(&recording, twin.twin);
   std::vector<Points> motion;

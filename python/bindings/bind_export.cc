@@ -57,7 +57,7 @@ void BindExport(nb::module_& module) {
         options.flexes = flexes;
         options.timestep = timestep;
         options.mesh = mesh;
-        ExportedFolder result = MakeExport(twin.twin, options, command);
+        ExportedFolder result = MakeExport(Checked(twin), options, command);
         std::vector<std::string> warnings;
         for (const std::string& warning : result.warnings) {
           warnings.push_back(twin.path + ": " + warning);

@@ -35,7 +35,23 @@ GivenRecording Load(const RecordingEntry& entry) {
 // A NumPy array of numbers, or what becomes one.
 NpzArray ArrayOf(const std::string& name, nb::handle value) {
   const nb::module_ numpy = nb::module_::import_("numpy");
-  const nb::object array = numpy.attr("asarray")(value);
+  nb::object array = numpy.attr("ma").attr("asanyarray")(value);
+  if (nb::cast<bool>(numpy.attr("ma").attr("is_masked")(array))) {  // masked is not seen
+    array = array.attr("astype")("float64").attr("filled")(numpy.attr("nan"));
+  }
+  array = numpy.attr("asarray")(array);
+  // big endian, long double, and objects that are numbers
+  const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+  const bool odd =
+      kind == "O" || (kind == "f" && !(nb::cast<bool>(array.attr("dtype").attr("isnative")) &&
+                                       nb::cast<int>(array.attr("dtype").attr("itemsize")) <= 8));
+  if (odd) {
+    try {
+      array = array.attr("astype")("float64");
+    } catch (const nb::python_error&) {
+      throw Error(fmt::format("array '{}' is not of numbers or truth values", name));
+    }
+  }
   nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu> numbers;
   if (!nb::try_cast(numpy.attr("ascontiguousarray")(array), numbers)) {
     throw Error(fmt::format("array '{}' is not of numbers or truth values", name));
@@ -47,6 +63,9 @@ NpzArray ArrayOf(const std::string& name, nb::handle value) {
 }
 
 GivenRecording FromArrays(const std::string& name, const nb::kwargs& arrays) {
+  if (name.empty() || name.find_first_of(std::string("/\0", 2)) != std::string::npos) {
+    throw Error("name is empty or has a '/': it is that of a file without its ending");
+  }
   Npz npz;
   for (const auto& [key, value] : arrays) {
     if (value.is_none()) continue;

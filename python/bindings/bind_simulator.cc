@@ -42,7 +42,8 @@ class LevelSimulator {
     Rebuild();
   }
 
-  const PathSimulator& Get() const { return *simulator_; }
+  // To be taken with the interpreter's lock: `Set` makes another one.
+  std::shared_ptr<const PathSimulator> Get() const { return simulator_; }
   const SpringMassSystem& system() const { return system_; }
   const PathOptions& options() const { return options_; }
   std::vector<NamedNumbers> Parameters() { return ParametersOf(&system_, &environment_); }
@@ -115,10 +116,11 @@ nb::tuple Roll(const LevelSimulator& self, const Numbers<3>& controllers,
                const OptionalPoints& position, const OptionalPoints& velocity) {
   const std::vector<Points> path = self.PathFrom(controllers);
   const PathStart start = self.StartFrom(position, velocity);
+  const auto simulator = self.Get();
   PathMotion motion;
   {
     const nb::gil_scoped_release unlocked;
-    motion = self.Get().Roll(start, path);
+    motion = simulator->Roll(start, path);
   }
   return nb::make_tuple(CopyOf(motion.position), CopyOf(motion.velocity));
 }
@@ -138,10 +140,11 @@ nb::dict Vjp(const LevelSimulator& self, const Numbers<3>& controllers,
   const std::vector<Points> position_bars = bar_of(position_bar, "position_bar");
   std::vector<Points> velocity_bars;
   if (velocity_bar) velocity_bars = bar_of(*velocity_bar, "velocity_bar");
+  const auto simulator = self.Get();
   std::optional<PathGradient> gradient;
   {
     const nb::gil_scoped_release unlocked;
-    gradient = self.Get().Gradient(start, path, position_bars, velocity_bars);
+    gradient = simulator->Gradient(start, path, position_bars, velocity_bars);
   }
   nb::dict dict = DictOf(GradientsOf(self.system(), &gradient->system));
   dict["position"] = CopyOf(gradient->position);
@@ -159,12 +162,14 @@ void BindState(nb::module_& module) {
       "controllers", [](const PathState& self) { return CopyOf(self.path.back()); },
       "(controllers, 3) where they are, m.", kHasOwner);
   state.def("__getstate__", [](const PathState& self) {
-    return nb::make_tuple(CopyOf(self.nodes), CopyOf(self.path));
+    return nb::make_tuple(self.fps, CopyOf(self.nodes), CopyOf(self.path));
   });
   state.def("__setstate__", [](PathState& self, const nb::tuple& parts) {
-    const auto nodes = nb::cast<Numbers<1>>(parts[0]);
-    const auto path = nb::cast<Numbers<3>>(parts[1]);
-    new (&self) PathState{std::vector<double>(nodes.data(), nodes.data() + nodes.size()),
+    if (parts.size() != 3) throw Error("a state has three parts");
+    const auto fps = nb::cast<double>(parts[0]);
+    const auto nodes = nb::cast<Numbers<1>>(parts[1]);
+    const auto path = nb::cast<Numbers<3>>(parts[2]);
+    new (&self) PathState{fps, std::vector<double>(nodes.data(), nodes.data() + nodes.size()),
                           FramesFrom(path, static_cast<Eigen::Index>(path.shape(1)), "path")};
   });
 }
@@ -204,7 +209,7 @@ void BindSimulator(nb::module_& module) {
       "start",
       [](const Class& self, const Numbers<2>& controllers, const OptionalPoints& position,
          const OptionalPoints& velocity) {
-        return self.Get().MakeState(
+        return self.Get()->MakeState(
             self.StartFrom(position, velocity),
             PointsFrom(controllers, self.system().controllers, "controllers"));
       },
@@ -214,15 +219,20 @@ void BindSimulator(nb::module_& module) {
       [](const Class& self, const PathState& state, const Numbers<2>& controllers) {
         PathState next = state;
         const Points end = PointsFrom(controllers, self.system().controllers, "controllers");
+        const auto simulator = self.Get();
+        simulator->ExpectOwn(state);
         const nb::gil_scoped_release unlocked;
-        self.Get().Advance(end, &next);
+        simulator->Advance(end, &next);
         return next;
       },
       nb::arg("state"), nb::arg("controllers"));
+  simulator.def("expect_own",
+                [](const Class& self, const PathState& state) { self.Get()->ExpectOwn(state); });
   simulator.def(
       "nodes",
       [](const Class& self, const PathState& state) {
-        const PathStart nodes = self.Get().Of(state);
+        self.Get()->ExpectOwn(state);
+        const PathStart nodes = self.Get()->Of(state);
         return nb::make_tuple(CopyOf(nodes.position), CopyOf(nodes.velocity));
       },
       nb::arg("state"));

@@ -14,7 +14,7 @@ namespace {
 nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, double hide,
                std::uint64_t seed) {
   Recording recording = given.recording;
-  UseClockOf(twin.twin, &recording);
+  UseClockOf(Checked(twin), &recording);
   ExpectSameObject(twin.twin, recording);
   const Twin held = HeldAsIn(&recording, twin.twin);
   TrackedMotion motion;

@@ -73,7 +73,7 @@ nb::tuple Train(const std::vector<const GivenRecording*>& recordings, const Wish
   TrainingTask task{DataOf(recordings), OptionsOf(wishes), std::nullopt};
   Warn(NewWarnings(recordings, task.data));
   if (wishes.from) {
-    ExpectLevel0Of(task.data, wishes.from->twin, wishes.from->path);
+    ExpectLevel0Of(task.data, Checked(*wishes.from), wishes.from->path);
     task.dense = wishes.from->twin;
   }
   const std::string from = wishes.from ? wishes.from->path : "";

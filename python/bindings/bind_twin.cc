@@ -37,15 +37,17 @@ std::string ReprOfTwin(const GivenTwin& given) {
   return fmt::format("<physpring.Twin '{}': {}>", given.twin.name, levels);
 }
 
-// A property that is a view of a member, which may be written to.
+// A property that is a view of a member, which may be written to; to set it copies numbers.
 template <class Member>
 void AddView(nb::class_<TwinLevel>* level, const char* name, Member member, const char* doc) {
-  level->def_prop_ro(
-      name,
-      [member](nb::handle self) {
-        return ViewOf(&(nb::cast<TwinLevel&>(self).system.*member), self);
-      },
-      doc, kHasOwner);
+  const auto get = [member](nb::handle self) {
+    return ViewOf(&(nb::cast<TwinLevel&>(self).system.*member), self);
+  };
+  const auto set = [get](nb::handle self, nb::handle value) {
+    nb::module_::import_("numpy").attr("copyto")(nb::cast(get(self), nb::rv_policy::reference),
+                                                 value);
+  };
+  level->def_prop_rw(name, get, set, doc, nb::for_getter(kHasOwner));
 }
 
 void BindLevel(nb::module_& module) {
@@ -82,7 +84,7 @@ void BindLevel(nb::module_& module) {
       "substeps_per_second", [](const TwinLevel& self) { return self.substeps_per_second; },
       "With which it was trained.");
   level.def_prop_ro(
-      "assignment", [](const TwinLevel& self) { return CopyOf(self.assignment); },
+      "assignment", [](const TwinLevel& self) { return FrozenCopyOf(self.assignment); },
       "(nodes of the level below,) the node of this level; empty at level 0.", kHasOwner);
   level.def_prop_ro(
       "contact",
@@ -99,11 +101,21 @@ void BindLevel(nb::module_& module) {
                     [](const TwinLevel& self) { return EffectsToJson(self.system.effects); });
   level.def(
       "largest_timestep",
-      [](const TwinLevel& self) { return ComputeStabilityBound(self.system).timestep; },
+      [](const TwinLevel& self) {
+        self.system.Validate("the level");
+        return ComputeStabilityBound(self.system).timestep;
+      },
       "The largest stable sub-step, s (no safety taken off).");
 }
 
 }  // namespace
+
+const Twin& Checked(const GivenTwin& given) {
+  for (std::size_t i = 0; i < given.twin.levels.size(); ++i) {
+    given.twin.levels[i].system.Validate(fmt::format("{}: level {}", given.path, i));
+  }
+  return given.twin;
+}
 
 void BindTwin(nb::module_& module) {
   BindLevel(module);
@@ -176,7 +188,7 @@ void BindTwin(nb::module_& module) {
         const int nodes = LevelOf(self.twin, 0).system.node_count();
         LevelOf(self.twin, level);
         return CopyOf(
-            AverageOverMembers(self.twin, level, PointsFrom(particles, nodes, "particles")));
+            AverageOverMembers(Checked(self), level, PointsFrom(particles, nodes, "particles")));
       },
       nb::arg("level"), nb::arg("particles"),
       "(nodes, 3) positions or velocities of a level's nodes: the mass-weighted means of their\n"
@@ -185,7 +197,7 @@ void BindTwin(nb::module_& module) {
       "lift",
       [](const Class& self, int level, const Numbers<2>& start, const Numbers<3>& nodes) {
         const int particles = LevelOf(self.twin, 0).system.node_count();
-        const Lift lift(self.twin, level, PointsFrom(start, particles, "start"));
+        const Lift lift(Checked(self), level, PointsFrom(start, particles, "start"));
         std::vector<Points> lifted;
         for (const Points& frame :
              FramesFrom(nodes, LevelOf(self.twin, level).system.node_count(), "nodes")) {

@@ -28,6 +28,9 @@ struct GivenTwin {
   Twin twin;
 };
 
+// The twin, whose levels may have been written to. Throws Error unless they still are levels.
+const Twin& Checked(const GivenTwin& given);
+
 // Each line as a Python warning of class physpring.PhyspringWarning. Throws what a filter makes an
 // error.
 void Warn(const std::vector<std::string>& lines);

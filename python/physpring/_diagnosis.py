@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from physpring import _core
-from physpring._recordings import RecordingLike, recordings_of, threads_of, twin_of
+from physpring._recordings import RecordingLike, recordings_of, seed_of, threads_of, twin_of
 
 
 class Report:
@@ -80,5 +80,5 @@ def diagnose(twin: _core.Twin | str | os.PathLike,
     """
     return Report(
         _core.diagnose(twin_of(twin), recordings_of(recordings, 'fit'),
-                       recordings_of(heldout, 'heldout'), recordings_of(before, 'fit'), seed,
+                       recordings_of(heldout, 'heldout'), recordings_of(before, 'fit'), seed_of(seed),
                        threads_of(threads), callback))

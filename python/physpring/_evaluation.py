@@ -13,7 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physpring import _core
-from physpring._recordings import RecordingLike, precision_of, recordings_of, threads_of, twin_of
+from physpring._recordings import (
+    RecordingLike,
+    number,
+    one_recording,
+    precision_of,
+    recordings_of,
+    seed_of,
+    threads_of,
+    twin_of,
+    whole,
+)
 
 Array = NDArray[np.float64]
 
@@ -30,11 +40,11 @@ class Evaluation:
 
     def points(self, recording: int = 0, level: int = 0) -> Array:
         """(T, N, 3) the measured points as the level predicts them, in all frames, m."""
-        return self._result.points(recording, level)
+        return self._result.points(whole('recording', recording, 0), whole('level', level, 0))
 
     def errors(self, recording: int = 0, level: int = 0) -> Array:
         """(T,) mean distance of predicted from measured points in each frame, m; NaN: none seen."""
-        return self._result.errors(recording, level)
+        return self._result.errors(whole('recording', recording, 0), whole('level', level, 0))
 
     def save_json(self, path: str | os.PathLike) -> None:
         """Writes what `physpring eval --json` does."""
@@ -63,6 +73,12 @@ def _millimetres(level: dict[str, Any]) -> str:
     return 'no data' if error is None else f'{1e3 * error:.2f} mm'
 
 
+def _expect_counts(**counts: int | None) -> None:
+    for name, count in counts.items():
+        if count is not None:
+            whole(name, count, 1)
+
+
 def evaluate(twin: _core.Twin | str | os.PathLike,
              recordings: RecordingLike | Iterable[RecordingLike],
              *,
@@ -76,6 +92,7 @@ def evaluate(twin: _core.Twin | str | os.PathLike,
     predict anew from this frame on, from the state that `track` finds there. threads: recordings at
     the same time. A twin that is no better than what needs no twin is a PhyspringWarning.
     """
+    _expect_counts(substeps=substeps, anchor=anchor)
     return Evaluation(
         _core.evaluate(twin_of(twin), recordings_of(recordings, 'heldout'), substeps,
                        precision_of(precision), anchor, threads_of(threads)))
@@ -89,11 +106,12 @@ def predict(twin: _core.Twin | str | os.PathLike,
             precision: str = 'double') -> Array:
     """(T, nodes, 3) where the nodes of a level are in each frame of a recording, m: from its start
     and the motion of its controllers alone."""
-    one, = recordings_of(recording, 'heldout')
-    return _core.predict(twin_of(twin), one, level, substeps, precision_of(precision))
+    _expect_counts(substeps=substeps)
+    one = one_recording(recording, 'heldout')
+    return _core.predict(twin_of(twin), one, whole('level', level, 0), substeps, precision_of(precision))
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Track:
     """Where all particles of an object are, found from a part of them. Errors are mean distances of
     the points that were not told, m; NaN where there are none."""
@@ -104,6 +122,11 @@ class Track:
     error_predicted: float  #: of the prediction from frame 0, without any measurement
     error_interpolated: float  #: of interpolation between the points that are told, without a twin
     frames_per_second: float  #: of processor time, by one thread
+
+    def __repr__(self) -> str:
+        frames, particles = self.position.shape[:2]
+        return (f'<physpring.Track: {particles} particles in {frames} frames, {len(self.hidden)} points '
+                f'hidden, {1e3 * self.error:.2f} mm off>')
 
 
 def track(twin: _core.Twin | str | os.PathLike,
@@ -116,9 +139,8 @@ def track(twin: _core.Twin | str | os.PathLike,
     does. cloud: follow the recording's `surface`, and judge by its points. hide: this part of the
     points is not told (0 to 0.95), and judged by; `seed` says which.
     """
-    if not 0 <= hide <= 0.95:
-        raise _core.Error(f'hide is {hide}, expected a number from 0 to 0.95')
+    number('hide', hide, 0, 0.95)
     if cloud and hide > 0:
         raise _core.Error('hide is for points: with cloud=True all of them are hidden')
-    one, = recordings_of(recording, 'heldout')
-    return Track(**_core.track(twin_of(twin), one, cloud, hide, seed))
+    one = one_recording(recording, 'heldout')
+    return Track(**_core.track(twin_of(twin), one, cloud, hide, seed_of(seed)))

@@ -7,7 +7,8 @@ import shlex
 from typing import TYPE_CHECKING
 
 from physpring import _core
-from physpring._recordings import twin_of
+from physpring._recordings import number, twin_of, whole
+from physpring._training import in_words_of_python
 
 if TYPE_CHECKING:
     import mujoco
@@ -46,13 +47,21 @@ def export(twin: _core.Twin | str | os.PathLike,
                                ('--name', name, None)):
         if value != usual:
             words += [flag, str(value)]
-    if not 1 <= flexes <= 1000:
-        raise _core.Error(f'flexes is {flexes}, expected a whole number from 1 to 1000')
+    whole('flexes', flexes, 1, 1000)
+    if level is not None:
+        whole('level', level, 0, 1000)
+    if timestep is not None:
+        number('timestep', timestep, 1e-9, 1)
+    if folder is not None and not os.fspath(folder):
+        raise _core.Error('folder is empty, expected the name of one')
     made = _core.export_twin(given, shlex.join(words), name or '', -1 if level is None else level,
                              springs, controllers, contact, flexes, timestep or 0.0,
                              '' if mesh is None else os.fspath(mesh))
     if folder is not None:
-        made.write(os.fspath(folder), force)
+        try:
+            made.write(os.fspath(folder), force)
+        except _core.Error as error:
+            raise _core.Error(in_words_of_python(str(error))) from None
         return made.files
     return _spec_of(made.files)
 

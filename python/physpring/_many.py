@@ -17,7 +17,7 @@ from typing import Any
 
 from physpring import _core
 from physpring._mujoco import scenes, task_folder
-from physpring._recordings import RecordingLike, recordings_of, threads_of
+from physpring._recordings import RecordingLike, number, recordings_of, seed_of, threads_of, whole
 from physpring._training import train
 from physpring._warnings import PhyspringWarning
 
@@ -74,9 +74,14 @@ def sweep(task: str | os.PathLike,
         None: they are not kept.
     callback: is called with the share of the episodes that are done and what was done last.
     """
-    if episodes < 1:
-        raise _core.Error(f'episodes is {episodes}, expected 1 or more')
-    levels = [int(level) for level in levels]
+    whole('episodes', episodes, 1)
+    whole('first', first, 0)
+    number('action_noise', action_noise, 0, 1)
+    number('start_noise', start_noise, 0, 1)
+    seed_of(seed)
+    if isinstance(levels, str) or not isinstance(levels, Iterable):
+        raise _core.Error(f'levels is {levels!r}, expected a list of whole numbers')
+    levels = [whole('level', level, 0) for level in levels]
     if len(set(levels)) != len(levels) or not levels:
         raise _core.Error(f'levels is {levels}, expected different ones')
     job = {'task': os.fspath(task_folder(task).resolve()), 'policy': policy, 'levels': levels,
@@ -144,7 +149,7 @@ def _spread(work: Callable[..., Any], jobs: Mapping[Any, tuple], executor: Any,
 
     def get() -> concurrent.futures.Executor:
         if not pool:
-            pool.append(concurrent.futures.ProcessPoolExecutor(threads_of(workers), context))
+            pool.append(concurrent.futures.ProcessPoolExecutor(threads_of(workers, 'workers'), context))
         return pool[0]
 
     def renew() -> None:  # a pool that lost a process takes no work any more

@@ -25,7 +25,7 @@ def scenes() -> Any:
     if library is None:
         raise _core.Error("MuJoCo is not installed, which this needs: pip install 'physpring[mujoco]'")
     # MuJoCo's own module first, because it says what MuJoCo does with errors and warnings
-    import mujoco  # pylint: disable=import-outside-toplevel,unused-import
+    import mujoco  # noqa: F401 pylint: disable=import-outside-toplevel,unused-import
     # its functions for all of the process: _scenes is linked with no MuJoCo of one version
     ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL | os.RTLD_NOLOAD)
     module = importlib.import_module('physpring._scenes')
@@ -37,4 +37,8 @@ def scenes() -> Any:
 def task_folder(task: str | os.PathLike) -> pathlib.Path:
     """The folder of a task: one of this package ('rope_routing'), or your own."""
     own = pathlib.Path(task)
-    return own if (own / 'task.json').exists() else TASKS / own
+    folder = own if (own / 'task.json').exists() else TASKS / own
+    if not (folder / 'task.json').exists():
+        known = ', '.join(sorted(one.parent.name for one in TASKS.glob('*/task.json')))
+        raise _core.Error(f'{task}: is no folder with a task.json, nor one of {known}')
+    return folder

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from physpring import _core
-from physpring._recordings import precision_of, twin_of
+from physpring._recordings import number, precision_of, twin_of, whole
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,10 @@ Array = NDArray[np.float64]
 def _doubles(name: str, value: ArrayLike, dimensions: int) -> Array:
     """An array of doubles in C order. The engine checks its extents."""
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        given = np.asarray(value)
+        if given.dtype.kind not in 'fiuO' or np.ma.isMaskedArray(value):
+            raise TypeError(f'it is of {given.dtype}' if given.dtype.kind not in 'fiuO' else 'it is masked')
+        array = np.ascontiguousarray(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise _core.Error(f'{name} is no array of numbers: {error}') from None
     if array.ndim != dimensions:
@@ -63,6 +66,11 @@ class Simulator:
         of_twin = isinstance(ground, str)
         if of_twin and ground != 'twin':
             raise _core.Error(f"ground is {ground!r}, expected four numbers, None or 'twin'")
+        whole('level', level, 0)
+        if fps is not None:
+            number('fps', fps, 0.1, 1e5)
+        if substeps is not None:
+            whole('substeps', substeps, 1, 10**6)
         self._core = _core.LevelSimulator(twin_of(twin), level, fps, substeps,
                                           _given('gravity', gravity, 1),
                                           None if of_twin else _given('ground', ground, 1), of_twin,
@@ -144,6 +152,9 @@ class Simulator:
 
     @state.setter
     def state(self, state: _core.SimulatorState) -> None:
+        if not isinstance(state, _core.SimulatorState):
+            raise TypeError(f'a state is a SimulatorState, not {type(state).__name__}')
+        self._core.expect_own(state)
         self._state = state
 
     @property

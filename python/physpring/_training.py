@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from physpring import _core
-from physpring._recordings import RecordingLike, recordings_of, threads_of, twin_of
+from physpring._recordings import RecordingLike, number, recordings_of, seed_of, threads_of, twin_of
 
 
 def train(recordings: RecordingLike | Iterable[RecordingLike],
@@ -43,12 +43,17 @@ def train(recordings: RecordingLike | Iterable[RecordingLike],
     Raises Error for what the program would refuse, in its words. How good the twin is on its
     recordings: `evaluate`. A twin that explains little is a PhyspringWarning.
     """
+    if output is not None and not os.fspath(output):
+        raise _core.Error('output is empty, expected the name of a file')
+    if resume and output is None:
+        raise _core.Error('resume needs output, the file to go on from')
+    number('checkpoint_interval', checkpoint_interval, 0, 1e9)
     wishes = {'levels': levels, **{key: value for key, value in options.items() if value is not None}}
     try:
         twin, _, _ = _core.train(
             recordings_of(recordings, 'fit'),
             options_json=_json(wishes),
-            seed=seed,
+            seed=seed_of(seed),
             threads=threads_of(threads),
             from_twin=None if from_twin is None else twin_of(from_twin),
             effects_of=None if effects_of is None else twin_of(effects_of),
@@ -72,6 +77,6 @@ def in_words_of_python(line: str) -> str:
 def _json(options: dict[str, Any]) -> str:
     """Options as JSON; arrays and numbers of NumPy are lists and numbers."""
     try:
-        return json.dumps(options, default=lambda value: value.tolist())
-    except (AttributeError, TypeError) as error:
+        return json.dumps(options, default=lambda value: value.tolist(), allow_nan=False)
+    except (AttributeError, TypeError, ValueError) as error:
         raise _core.Error(f'an option of the training is not a word, number or list: {error}') from None

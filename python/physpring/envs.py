@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 
 from physpring import _core
 from physpring._mujoco import scenes, task_folder
-from physpring._recordings import threads_of
+from physpring._recordings import number, seed_of, threads_of, whole
+from physpring._simulation import _doubles
 
 TASKS = {'RopeRouting': 'rope_routing', 'ToyPacking': 'toy_packing', 'TPush': 't_push',
          'ClothFolding': 'cloth_folding'}
@@ -40,6 +41,9 @@ class _Setting:
         kinds = ('particles', 'nodes', 'pixels', 'pixels+particles')
         if obs not in kinds:
             raise _core.Error(f'obs is {obs!r}, expected one of {", ".join(kinds)}')
+        whole('level', level, 0)
+        whole('width', width, 0, 8192)
+        whole('height', height, 0, 8192)
         self.task = scenes().Task.load(os.fspath(task_folder(task)), level, quality, width, height)
         self.seen = obs.split('+')
         self.observation_space = self._observations()
@@ -126,8 +130,8 @@ class TaskEnv(gymnasium.Env):
             raise _core.Error(f"render_mode is {render_mode!r}, expected None or 'rgb_array'")
         self._setting = _Setting(task, level, obs, width, height, quality)
         self._scene = scenes().Scene(self._setting.task)
-        self._noise = action_noise, start_noise
-        self._cells = cells
+        self._noise = _noise(action_noise, start_noise)
+        self._cells = bool(cells)
         self._seed, self._next = 0, 0
         self.render_mode = render_mode
         self.observation_space = self._setting.observation_space
@@ -140,6 +144,8 @@ class TaskEnv(gymnasium.Env):
             self._seed, self._next = seed, 0
         options = options or {}
         unknown = set(options) - {'episode', 'position', 'quaternion'}
+        if 'quaternion' in options and 'position' not in options:
+            raise _core.Error('quaternion needs position: where the object starts')
         if unknown:
             raise _core.Error(f'reset knows no option {min(unknown)!r}; there are episode, '
                               'position, quaternion')
@@ -153,8 +159,8 @@ class TaskEnv(gymnasium.Env):
 
     def _episode(self, wished: int | None) -> int:
         if wished is not None:
-            self._next = int(wished) + 1
-            return int(wished)
+            self._next = whole('episode', wished, 0) + 1
+            return self._next - 1
         episode = self._next
         self._next += 1
         if self._cells:
@@ -200,13 +206,15 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
                  quality: str = 'fast',
                  action_noise: float = 0,
                  start_noise: float = 0,
+                 cells: bool = True,
                  threads: int | None = None,
                  render_mode: str | None = None):
         if render_mode is not None:
             raise _core.Error('a vector of environments has no render_mode')
         self._setting = _Setting(task, level, obs, width, height, quality)
+        whole('num_envs', num_envs, 1)
         self._scenes = [scenes().Scene(self._setting.task) for _ in range(num_envs)]
-        self._noise = action_noise, start_noise
+        self._noise = _noise(action_noise, start_noise)
         self._threads = threads_of(threads)
         self.num_envs = num_envs
         self.single_observation_space = self._setting.observation_space
@@ -215,14 +223,21 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.render_mode = None
         self._seeds, self._next = [0] * num_envs, [0] * num_envs
+        self._cells = bool(cells)
         self._ended = np.zeros(num_envs, bool)
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: dict[str, Any] | None = None) -> Any:
         options = options or {}
+        if set(options) - {'reset_mask'}:
+            raise _core.Error(f'reset knows no option {min(set(options) - {"reset_mask"})!r}; there is '
+                              'reset_mask')
         mask = np.asarray(options.get('reset_mask', np.ones(self.num_envs, bool)), bool)
-        if isinstance(seed, int):
-            seed = [seed + i for i in range(self.num_envs)]
+        if seed is not None and not isinstance(seed, (Sequence, np.ndarray)):
+            seed = [seed_of(seed) + i for i in range(self.num_envs)]
+        if mask.shape != (self.num_envs,) or (seed is not None and len(seed) != self.num_envs):
+            raise _core.Error(f'reset_mask and seed have one entry for each of {self.num_envs} '
+                              'environments')
         for i, one in enumerate(seed or ()):
             if one is not None and mask[i]:
                 self._seeds[i], self._next[i] = one, 0
@@ -234,12 +249,18 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
         """The next episode of some of them."""
         which = [int(i) for i in which]
         scenes().reset_all([self._scenes[i] for i in which], [self._seeds[i] for i in which],
-                           [self._next[i] for i in which], *self._noise, self._threads)
+                           [self._cell(i) for i in which], *self._noise, self._threads)
         for i in which:
             self._next[i] += 1
 
+    def _cell(self, i: int) -> int:
+        if self._cells:
+            return self._next[i]
+        random = np.random.default_rng((self._seeds[i], self._next[i]))
+        return int(random.integers(self._setting.task.cells * 1000))
+
     def step(self, actions: NDArray[np.float64]) -> Any:
-        actions = np.ascontiguousarray(actions, float)
+        actions = _doubles('actions', actions, 2)
         if actions.shape != self.action_space.shape:
             raise _core.Error(
                 f'actions has shape {actions.shape}, expected {self.action_space.shape}')
@@ -270,10 +291,11 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
 
 
 def _action(action: Any) -> NDArray[np.float64]:
-    array = np.ascontiguousarray(action, dtype=np.float64)
-    if array.ndim != 1:
-        raise _core.Error(f'an action has one dimension, not the shape {array.shape}')
-    return array
+    return _doubles('an action', action, 1)
+
+
+def _noise(action_noise: float, start_noise: float) -> tuple[float, float]:
+    return number('action_noise', action_noise, 0, 1), number('start_noise', start_noise, 0, 1)
 
 
 def register() -> None:

@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from physpring import _core
-from physpring._simulation import Simulator, _start
+from physpring._recordings import number, whole
+from physpring._simulation import Simulator, _doubles, _start
 
 Array = NDArray[np.float64]
 Cost = Callable[[Array], tuple[float, Array]]
@@ -76,24 +77,36 @@ class Planner:
         self.simulator = Simulator(twin, level, **simulator)
         if (target_points is None) == (target_cost is None):
             raise _core.Error('one of target_points and target_cost is needed')
-        if horizon < 1 or knots < 1 or not max_speed > 0:
-            raise _core.Error('horizon and knots are 1 or more, and max_speed is above 0')
+        whole('horizon', horizon, 1)
+        whole('knots', knots, 1)
+        number('max_speed', max_speed, 1e-9, 1e3)
+        number('max_stretch', max_stretch, 0, 1e6)
+        number('smoothness', smoothness, 0, 1e6)
         self._goals: tuple[Array, Array] | None = None  # nodes, and where they should be
         self._target = target_cost or self._towards(np.asarray(target_points, float), target_nodes)
         self.horizon = horizon
         self._basis = _hat_functions(horizon, min(knots, horizon))
         count = self.simulator.controller_count
-        self._grasps = [list(one) for one in (grasps or [[c] for c in range(count)])]
+        self._grasps = [[whole('a controller of grasps', c, 0, count - 1) for c in one]
+                        for one in ([[c] for c in range(count)] if grasps is None else grasps)]
+        if sorted(c for one in self._grasps for c in one) != list(range(count)) or [] in self._grasps:
+            raise _core.Error(f'grasps has not each of the {count} controllers once')
         self._max_speed, self._max_stretch = max_speed, max_stretch
         self._smoothness = smoothness
-        self._obstacles = np.asarray(obstacles, float).reshape(-1, 4)
+        self._obstacles = _doubles('obstacles', np.reshape(obstacles, (0, 4)) if len(obstacles) == 0
+                                   else obstacles, 2)
+        if self._obstacles.shape[1] != 4 or not (np.isfinite(self._obstacles).all() and
+                                                 (self._obstacles[:, 3:] > 0).all()):
+            raise _core.Error('obstacles has a row of x, y, z and a radius above 0 for each')
         springs = twin_level(twin, level)
         self._springs, self._rest = springs.springs.copy(), springs.rest_length.copy()
         self._size = springs.position.std(axis=0).max()  # of the object, m: the unit of lengths
         self._left: Array | None = None  # the velocities of the last plan
 
     def _towards(self, target: Array, nodes: Sequence[int] | None) -> Cost:
-        which = np.arange(len(target)) if nodes is None else np.asarray(nodes)
+        which = np.arange(len(target)) if nodes is None else np.atleast_1d(np.asarray(nodes, int))
+        if not np.isfinite(target).any() or len(set(which.tolist())) != len(which) or which.min() < 0:
+            raise _core.Error('target_points has no number, or target_nodes names a node twice')
         if target.shape != (len(which), 3) or which.max() >= self.simulator.node_count:
             raise _core.Error(f'target_points has shape {target.shape}, expected one row of three '
                               'for each target node')
@@ -328,6 +341,9 @@ class _Search:
         planner = self._planner
         unit = planner._size**-2
         wanted, wanted_bar = planner._target(position)
+        if not np.isfinite(wanted) or np.shape(wanted_bar) != position.shape:
+            raise _core.Error('target_cost gave a cost that is not finite, or derivatives of the shape '
+                              f'{np.shape(wanted_bar)}, expected {position.shape}')
         stretched, by_nodes, by_hands, most = planner._stretch(position, path)
         hit, hit_nodes = planner._collide(position, self.obstacles)
         hit_hand, hit_hands = planner._collide(path, self.obstacles)

@@ -93,7 +93,7 @@ def test_bad_actions_are_refused_and_change_nothing():
     expected = env.step(good)[0]
     env.reset(seed=0)
     for bad, why in ((good[:7], 'has 7 numbers, expected 8'), (good * np.nan, 'not finite'),
-                     (good * [1, 1, 1, 0, 0, 0, 0, 1], 'quaternion'), (good[None], 'one dimension')):
+                     (good * [1, 1, 1, 0, 0, 0, 0, 1], 'quaternion'), (good[None], '1 dimension'), (good + 1j, 'complex')):
         with pytest.raises(physpring.Error, match=why):
             env.step(bad)
     assert np.array_equal(env.step(good)[0]['particles'], expected['particles'])

@@ -105,6 +105,25 @@ TEST(PathSimulator, GradientMatchesDifferences) {
   EXPECT_TRUE(report.passed) << report.log;
 }
 
+TEST(PathSimulator, KnowsItsOwnStates) {
+  const Late late;
+  const auto simulator = late.simulator();
+  PathState state = simulator->MakeState(late.start(), late.recording.controllers[0]);
+  EXPECT_NO_THROW(simulator->ExpectOwn(state));
+  PathState other = state;
+  other.fps = 7;
+  EXPECT_THROW(simulator->ExpectOwn(other), Error);
+  other = state;
+  other.nodes.pop_back();
+  EXPECT_THROW(simulator->ExpectOwn(other), Error);
+  other = state;
+  other.path.clear();
+  EXPECT_THROW(simulator->ExpectOwn(other), Error);
+  other = state;
+  other.path.emplace_back(3, 1);
+  EXPECT_THROW(simulator->ExpectOwn(other), Error);
+}
+
 TEST(PathSimulator, SaysWhereAMotionDiverges) {
   Late late;
   late.twin.levels[0].system.stiffness *= 1e9;

@@ -43,6 +43,14 @@ void WarnOfMovedGrasps(const Recording& first, Recording* recording) {
   }
 }
 
+void WarnOfMass(const Recording& first, Recording* recording) {
+  constexpr double kAlike = 0.01;  // masses are alike that differ by this part
+  if (std::abs(recording->mass - first.mass) <= kAlike * first.mass) return;
+  recording->warnings.push_back(fmt::format(
+      "recording {}: says that the object weighs {:.4g} kg; the {:.4g} kg of {} are taken",
+      recording->name, recording->mass, first.mass, first.name));
+}
+
 // Whether a particle is seen after frame 0, in the frames for fitting.
 bool SeesMotion(const Recording& recording) {
   for (int t = 1; t < recording.train_frames; ++t) {
@@ -72,6 +80,7 @@ void Add(const std::vector<RecordingEntry>& entries, Recording recording, FitDat
                             entry.path, recordings.back().train_frames - 1));
   }
   ExpectNew(recordings, entries);
+  WarnOfMass(recordings[0], &recordings.back());
   WarnOfOddNumbering(recordings[0], entry.path, &recordings.back());
   WarnOfMovedGrasps(recordings[0], &recordings.back());
   const int own = -static_cast<int>(recordings.size());

@@ -11,6 +11,7 @@
 
 #include "python/bindings/arrays.h"
 #include "python/bindings/scenes/task_scene.h"
+#include "python/bindings/watched_work.h"
 #include "report/rollout_report.h"
 #include "rollout/mujoco_library.h"
 #include "rollout/plugin_library.h"
@@ -95,6 +96,33 @@ void BindTask(nb::module_& module) {
       kHasOwner);
 }
 
+// Scenes that a thread works on, without the interpreter's lock, which it has when this begins and
+// ends.
+class InUse {
+ public:
+  explicit InUse(std::vector<TaskScene*> scenes) : scenes_(std::move(scenes)) {
+    for (const TaskScene* scene : scenes_) ExpectIdle(*scene);
+    for (TaskScene* scene : scenes_) scene->in_use = true;
+  }
+  ~InUse() {
+    for (TaskScene* scene : scenes_) scene->in_use = false;
+  }
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+  static void ExpectIdle(const TaskScene& scene) {
+    if (scene.in_use) throw Error("the environment is at work in another thread");
+  }
+
+ private:
+  std::vector<TaskScene*> scenes_;
+};
+
+const TaskScene& Idle(const TaskScene& scene) {
+  InUse::ExpectIdle(scene);
+  return scene;
+}
+
 void BindScene(nb::module_& module) {
   using Class = TaskScene;
   nb::class_<Class> scene(module, "Scene");
@@ -104,10 +132,11 @@ void BindScene(nb::module_& module) {
   scene.def(
       "reset",
       [](Class& self, std::uint64_t seed, int episode, double action_noise, double start_noise) {
+        const InUse in_use({&self});
+        const nb::gil_scoped_release unlocked;
         self.Reset(seed, episode, {action_noise, start_noise});
       },
-      nb::arg("seed"), nb::arg("episode"), nb::arg("action_noise"), nb::arg("start_noise"),
-      nb::call_guard<nb::gil_scoped_release>());
+      nb::arg("seed"), nb::arg("episode"), nb::arg("action_noise"), nb::arg("start_noise"));
   scene.def(
       "reset_at",
       [](Class& self, const Numbers<1>& position, const Numbers<1>& quaternion,
@@ -115,6 +144,7 @@ void BindScene(nb::module_& module) {
         const Eigen::VectorXd q = VectorFrom(quaternion, 4, "quaternion");
         const Pose object{VectorFrom(position, 3, "position"),
                           UnitQuaternion(q[0], q[1], q[2], q[3])};
+        const InUse in_use({&self});
         const nb::gil_scoped_release unlocked;
         self.ResetAt(object, seed);
       },
@@ -123,6 +153,7 @@ void BindScene(nb::module_& module) {
       "step",
       [](Class& self, const Numbers<1>& given) {
         const Eigen::VectorXd action = ActionFrom(given);
+        const InUse in_use({&self});
         const nb::gil_scoped_release unlocked;
         self.Step(action);
       },
@@ -130,6 +161,7 @@ void BindScene(nb::module_& module) {
   scene.def("look", [](Class& self) {
     std::map<std::string, Image> images;
     {
+      const InUse in_use({&self});
       const nb::gil_scoped_release unlocked;
       images = self.Look();
     }
@@ -138,37 +170,42 @@ void BindScene(nb::module_& module) {
   scene.def(
       "act",
       [](Class& self, const std::string& policy) {
+        const InUse in_use({&self});
         Eigen::VectorXd action;
-        {
+        if (policy.starts_with("ws://")) {  // it may wait long
+          RunWatched(nb::none(), [&](const TellShare& /*tell*/) { action = self.Act(policy); });
+        } else {
           const nb::gil_scoped_release unlocked;
           action = self.Act(policy);
         }
         return CopyOf(action);
       },
       nb::arg("policy"));
-  scene.def_prop_ro("frame", [](const Class& self) { return self.episode().frame(); });
-  scene.def_prop_ro("over", [](const Class& self) { return self.episode().over(); });
-  scene.def_prop_ro("success", [](const Class& self) { return self.episode().success(); });
+  scene.def_prop_ro("frame", [](const Class& self) { return Idle(self).episode().frame(); });
+  scene.def_prop_ro("over", [](const Class& self) { return Idle(self).episode().over(); });
+  scene.def_prop_ro("success", [](const Class& self) { return Idle(self).episode().success(); });
   scene.def_prop_ro("met", [](const Class& self) {
-    return self.episode().verdict().met && self.episode().counts();
+    return Idle(self).episode().verdict().met && Idle(self).episode().counts();
   });
-  scene.def_prop_ro("value", [](const Class& self) { return self.episode().verdict().value; });
-  scene.def_prop_ro("met_frames", [](const Class& self) { return self.record().met_frames; });
+  scene.def_prop_ro("value",
+                    [](const Class& self) { return Idle(self).episode().verdict().value; });
+  scene.def_prop_ro("met_frames", [](const Class& self) { return Idle(self).record().met_frames; });
   scene.def_prop_ro(
-      "robot", [](const Class& self) { return CopyOf(self.episode().observation().robot); },
+      "robot", [](const Class& self) { return CopyOf(Idle(self).episode().observation().robot); },
       kHasOwner);
   scene.def_prop_ro(
-      "particles", [](const Class& self) { return CopyOf(self.episode().observation().particles); },
+      "particles",
+      [](const Class& self) { return CopyOf(Idle(self).episode().observation().particles); },
       kHasOwner);
   scene.def_prop_ro(
       "nodes",
       [](const Class& self) {
-        static_cast<void>(self.episode());
+        static_cast<void>(Idle(self).episode());
         return CopyOf(self.record().nodes.back());
       },
       kHasOwner);
   scene.def_prop_ro("start", [](const Class& self) {
-    const EpisodeStart& start = self.record().start;
+    const EpisodeStart& start = Idle(self).record().start;
     const Eigen::Quaterniond& q = start.object.orientation;
     return nb::make_tuple(start.episode, CopyOf(Eigen::VectorXd(start.object.position)),
                           CopyOf(Eigen::VectorXd(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()))));
@@ -183,6 +220,9 @@ void StepAll(const std::vector<TaskScene*>& scenes, const Numbers<2>& given, int
     actions.emplace_back(Eigen::Map<const Eigen::VectorXd>(
         given.data() + i * given.shape(1), static_cast<Eigen::Index>(given.shape(1))));
   }
+  const InUse in_use(scenes);
+  // all or none
+  for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i]->ExpectStep(actions[i]);
   const nb::gil_scoped_release unlocked;
   ParallelFor(static_cast<int>(scenes.size()), threads,
               [&](int i) { scenes[i]->Step(actions[i]); });
@@ -191,6 +231,8 @@ void StepAll(const std::vector<TaskScene*>& scenes, const Numbers<2>& given, int
 void ResetAll(const std::vector<TaskScene*>& scenes, const std::vector<std::uint64_t>& seeds,
               const std::vector<int>& episodes, double action_noise, double start_noise,
               int threads) {
+  const InUse in_use(scenes);
+  const nb::gil_scoped_release unlocked;
   ParallelFor(static_cast<int>(scenes.size()), threads, [&](int i) {
     scenes[i]->Reset(seeds.at(i), episodes.at(i), {action_noise, start_noise});
   });
@@ -204,9 +246,9 @@ nb::tuple SweepTask(const std::string& folder, const std::string& output,
     throw Error("policy is '" + policy +
                 "', expected scripted, random, replay:PATH or ws://HOST:PORT");
   }
+  if (first < 0) throw Error("first is below 0, expected the number of an episode");
   Sweep sweep;
-  {
-    const nb::gil_scoped_release unlocked;
+  RunWatched(nb::none(), [&](const TellShare& /*tell*/) {
     ExpectMujoco();
     LoadPluginLibrary();
     const Task task = ReadTask(folder);
@@ -229,8 +271,13 @@ nb::tuple SweepTask(const std::string& folder, const std::string& output,
       if (!images) return nullptr;
       return MakeCameraThread(model, {PictureQuality::kFast, "", {}});
     };
+    hooks.stop = [] {
+      StopIfRequested();
+      return false;
+    };
     sweep = RunSweep(task, options, hooks);
-  }
+    if (!sweep.complete) throw Stopped();
+  });
   return nb::make_tuple(sweep.episodes.size(), sweep.warnings);
 }
 
@@ -278,8 +325,7 @@ NB_MODULE(_scenes, module) {
              nb::arg("fps"), nb::arg("effects"), nb::call_guard<nb::gil_scoped_release>());
   module.def("step_all", &StepAll, nb::arg("scenes"), nb::arg("actions"), nb::arg("threads"));
   module.def("reset_all", &ResetAll, nb::arg("scenes"), nb::arg("seeds"), nb::arg("episodes"),
-             nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"),
-             nb::call_guard<nb::gil_scoped_release>());
+             nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"));
   module.def("sweep", &SweepTask, nb::arg("task"), nb::arg("output"), nb::arg("levels"),
              nb::arg("policy"), nb::arg("first"), nb::arg("episodes"), nb::arg("seed"),
              nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"),

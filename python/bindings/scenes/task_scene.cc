@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "python/bindings/scenes/task_scene.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "rollout/mujoco_library.h"
@@ -31,11 +33,14 @@ void TaskScene::Begin(const EpisodeStart& start) {
   result_.episode.start = start;
   result_.episode.level = task_->model.level;
   policy_.reset();
-  episode_.emplace(task_->model, &simulation_, &result_);
-  episode_->Begin();
+  episode_.reset();  // where it does not begin, there is none
+  SteppedEpisode episode(task_->model, &simulation_, &result_);
+  episode.Begin();
+  episode_.emplace(std::move(episode));
 }
 
 void TaskScene::Reset(std::uint64_t seed, int episode, const Disturbance& disturbance) {
+  if (episode < 0) throw Error(fmt::format("episode is {}, expected 0 or more", episode));
   Begin(StartOf(task_->task, seed, episode, disturbance));
 }
 
@@ -51,8 +56,13 @@ const SteppedEpisode& TaskScene::episode() const {
   throw Error("no episode has begun: reset() comes before step()");
 }
 
-void TaskScene::Step(const Eigen::VectorXd& action) {
+void TaskScene::ExpectStep(const Eigen::VectorXd& action) const {
   if (episode().over()) throw Error("the episode is over: reset() begins another one");
+  ExpectAction(action, task_->task.robot);
+}
+
+void TaskScene::Step(const Eigen::VectorXd& action) {
+  ExpectStep(action);
   episode_->Step(action);
 }
 

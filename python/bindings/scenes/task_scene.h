@@ -35,6 +35,9 @@ std::shared_ptr<const TaskAtLevel> LoadTask(const std::string& folder, int level
 
 class TaskScene {
  public:
+  // Whether a thread works on it; guarded by the interpreter's lock.
+  bool in_use = false;
+
   explicit TaskScene(std::shared_ptr<const TaskAtLevel> task);
 
   // Begins the episode of a sweep with this number. Throws Error where the scene does not settle.
@@ -44,6 +47,8 @@ class TaskScene {
 
   // See SteppedEpisode::Step; also refuses where no episode is under way.
   void Step(const Eigen::VectorXd& action);
+  // Throws as Step does, and changes nothing.
+  void ExpectStep(const Eigen::VectorXd& action) const;
 
   // What the task's cameras see, by their names.
   std::map<std::string, Image> Look();
