@@ -15,14 +15,15 @@ import time
 
 import numpy as np
 import physpring
-from physpring.planning import Planner, _Search
+from physpring._plan_search import Search
+from physpring.planning import Planner
 
 
 def cem(planner, position, hands, seconds, seed, guess, population=24, elite=6, keep=0.3):
     """The best plan of the cross-entropy method over the numbers of the planner's paths. `guess`:
     it begins about the same path as the planner does; else about hands that stay."""
     random = np.random.default_rng(seed)
-    search = _Search(planner, hands, {'position': position, 'velocity': None}, np.inf, 10**9)
+    search = Search(planner, hands, {'position': position, 'velocity': None}, np.inf, 10**9)
     size = planner._basis.shape[1] * len(planner._grasps) * 3
     end = time.perf_counter() + seconds
     mean, spread = np.zeros(size), np.full(size, 0.7)

@@ -55,11 +55,11 @@ def test_goes_round_an_obstacle(twin, hanging):
 
 
 def test_gradient_matches_differences(twin, hanging):
-    from physpring.planning import _Search
+    from physpring._plan_search import Search
     position, hand = hanging
     planner = Planner(twin, target_points=end_at(position[-1] + 0.1), horizon=10, knots=3,
                       max_stretch=0.0, obstacles=[[*position[5], 0.05], [*(hand[0] + 0.01), 0.1]])
-    search = _Search(planner, hand, {'position': position, 'velocity': None}, np.inf, 1000)
+    search = Search(planner, hand, {'position': position, 'velocity': None}, np.inf, 1000)
     random = np.random.default_rng(0)
     numbers = random.normal(0, 0.5, 9)
     gradient = search.cost(numbers)[1]
