@@ -111,7 +111,8 @@ def train_many(recordings: Mapping[str, RecordingLike | Iterable[RecordingLike]]
     """A twin of each of many objects: `train`, spread over workers as `sweep` is.
 
     recordings: of each object, by its name. output: folder for NAME.twin.npz; twins that are there
-    already are not trained again. options: those of `train`.
+    already, of the same recordings, are not trained again, whatever the options. options: those of
+    `train`.
     """
     folder = None if output is None else pathlib.Path(output)
     if folder is not None:
@@ -119,11 +120,11 @@ def train_many(recordings: Mapping[str, RecordingLike | Iterable[RecordingLike]]
     twins: dict[str, _core.Twin] = {}
     jobs = {}
     for name, given in recordings.items():
+        of_object = recordings_of(given, 'fit')
         if folder is not None and (folder / f'{name}.twin.npz').exists():
-            twins[name] = _core.Twin.load(folder / f'{name}.twin.npz')
+            twins[name] = _twin_of(of_object, folder / f'{name}.twin.npz')
         else:
-            arrays = [(one.name, one.arrays()) for one in recordings_of(given, 'fit')]
-            jobs[name] = (name, arrays, options)
+            jobs[name] = (name, of_object, options)
     _tell(callback, len(twins), len(recordings))
     with tempfile.TemporaryDirectory() as temporary:
         for name, content in _spread(_train, jobs, executor, workers):
@@ -215,9 +216,8 @@ def _run(job: Mapping[str, Any], folder: pathlib.Path, first: int, episodes: int
                    job['seed'], job['action_noise'], job['start_noise'], 1, job['states'])
 
 
-def _train(name: str, arrays: list[tuple[str, dict[str, Any]]], options: dict[str, Any]) -> bytes:
+def _train(name: str, given: list[_core.Recording], options: dict[str, Any]) -> bytes:
     """The file of a twin."""
-    given = [_core.Recording.from_arrays(name=one, **values) for one, values in arrays]
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / f'{name}.twin.npz'
         train(given, output=path, **{'threads': 1, **options})
@@ -225,6 +225,14 @@ def _train(name: str, arrays: list[tuple[str, dict[str, Any]]], options: dict[st
 
 
 # what is kept
+
+def _twin_of(recordings: list[_core.Recording], path: pathlib.Path) -> _core.Twin:
+    """A twin that was trained before."""
+    twin = _core.Twin.load(path)
+    if [one for _, one in twin.trained_on] != [one.hash for one in recordings]:
+        raise _core.Error(f'{path}: is a twin of other recordings; choose another folder')
+    return twin
+
 
 def _is_kept(folder: pathlib.Path, levels: Sequence[int], number: int) -> bool:
     """Whether an episode is there and whole, at all levels."""

@@ -139,5 +139,7 @@ def test_many_trainings_are_single_ones(recording, tmp_path):
         assert (tmp_path / 'twins' / f'{name}.twin.npz').exists()
     again = physpring.train_many(objects, workers=2, output=tmp_path / 'twins', **QUICK)
     assert np.array_equal(again['one'].levels[0].mass, twins['one'].levels[0].mass)
+    with pytest.raises(physpring.Error, match='is a twin of other recordings'):
+        physpring.train_many({'one': objects['two']}, output=tmp_path / 'twins', **QUICK)
     with pytest.raises(physpring.Error, match='levels is 11'):
         physpring.train_many(objects, workers=1, levels=11)

@@ -23,10 +23,11 @@ def skip(why):
     sys.exit(77)
 
 
-def test(python, tests, *options):
+def run_tests(python, tests, *options):
     """pytest, in a folder from which no source is imported."""
     run(python, '-P' if sys.version_info >= (3, 11) else '-s', '-m', 'pytest', '-q', '-p',
-        'no:cacheprovider', '--rootdir', HERE, *options, *(HERE / name for name in tests))
+        'no:cacheprovider', '-o', 'python_files=test_*.py', '--rootdir', HERE, *options,
+        *(HERE / name for name in tests))
 
 
 def main(dist, environment, *packages):
@@ -48,16 +49,16 @@ def main(dist, environment, *packages):
         run(*pip, wheel, 'pytest')
     except subprocess.CalledProcessError:
         skip('python3-venv or PyPI is out of reach')
-    test(python, ['test_recording.py', 'test_training.py', 'test_simulator.py', 'test_package.py'])
+    run_tests(python, ['test_recording.py', 'test_training.py', 'test_simulator.py', 'test_package.py'])
     try:
         run(*pip, f'{wheel}[mujoco,envs,plan]', 'distributed', 'nbclient',
             'ipykernel', 'matplotlib', *packages)
     except subprocess.CalledProcessError:
         skip('MuJoCo or Gymnasium are out of reach')
-    test(python, ['.'])
+    run_tests(python, ['.'])
     # the extra takes the newest 4.0.x; and the one that the package was built with
     run(*pip, 'mujoco-core==4.0.0')
-    test(python, ['test_package.py', 'test_export.py', 'test_envs.py'])
+    run_tests(python, ['test_package.py', 'test_export.py', 'test_envs.py'])
 
 
 if __name__ == '__main__':
