@@ -44,7 +44,7 @@ def record(scene: str | os.PathLike,
     """
     from physpring._mujoco import OBJECTS, scenes  # pylint: disable=import-outside-toplevel
     own = pathlib.Path(scene)
-    path = own if own.exists() else OBJECTS / f'{own}.xml'
+    path = own if own.is_file() else OBJECTS / f'{own}.xml'
     if not path.exists():
         raise _core.Error(f'{scene}: is no file, nor one of '
                           f'{", ".join(sorted(one.stem for one in OBJECTS.glob("*.xml")))}')

@@ -86,6 +86,25 @@ class _Setting:
         return {'value': scene.value, 'met_frames': scene.met_frames, 'is_success': scene.success}
 
 
+class _Episodes:
+    """The numbers of an environment's episodes: one after the other, as in `physpring rollout`, or in
+    random cells of the task's grid."""
+
+    def __init__(self, setting: _Setting, one_after_the_other: bool):
+        self.seed, self._next = 0, 0
+        self._random_of = None if one_after_the_other else 1000 * setting.task.cells
+
+    def begin(self, seed: int) -> None:
+        self.seed, self._next = seed, 0
+
+    def next(self, wished: int | None = None) -> int:
+        episode = self._next if wished is None else whole('episode', wished, 0)
+        self._next = episode + 1
+        if wished is not None or self._random_of is None:
+            return episode
+        return int(np.random.default_rng((self.seed, episode)).integers(self._random_of))
+
+
 class TaskEnv(gymnasium.Env):
     """A task at one level of its twin.
 
@@ -131,8 +150,7 @@ class TaskEnv(gymnasium.Env):
         self._setting = _Setting(task, level, obs, width, height, quality)
         self._scene = scenes().Scene(self._setting.task)
         self._noise = _noise(action_noise, start_noise)
-        self._cells = bool(cells)
-        self._seed, self._next = 0, 0
+        self._episodes = _Episodes(self._setting, cells)
         self.render_mode = render_mode
         self.observation_space = self._setting.observation_space
         self.action_space = self._setting.action_space
@@ -141,7 +159,7 @@ class TaskEnv(gymnasium.Env):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
         super().reset(seed=seed)
         if seed is not None:
-            self._seed, self._next = seed, 0
+            self._episodes.begin(seed)
         options = options or {}
         unknown = set(options) - {'episode', 'position', 'quaternion'}
         if 'quaternion' in options and 'position' not in options:
@@ -152,20 +170,11 @@ class TaskEnv(gymnasium.Env):
         if 'position' in options:
             self._scene.reset_at(np.asarray(options['position'], float),
                                  np.asarray(options.get('quaternion', (1, 0, 0, 0)), float),
-                                 self._seed)
+                                 self._episodes.seed)
         else:
-            self._scene.reset(self._seed, self._episode(options.get('episode')), *self._noise)
+            episode = self._episodes.next(options.get('episode'))
+            self._scene.reset(self._episodes.seed, episode, *self._noise)
         return self._setting.observe(self._scene), self._inform()
-
-    def _episode(self, wished: int | None) -> int:
-        if wished is not None:
-            self._next = whole('episode', wished, 0) + 1
-            return self._next - 1
-        episode = self._next
-        self._next += 1
-        if self._cells:
-            return episode
-        return int(self.np_random.integers(self._setting.task.cells * 1000))
 
     def _inform(self) -> dict[str, Any]:
         return {**self._setting.inform(self._scene), 'episode': self._scene.start[0]}
@@ -222,8 +231,7 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.render_mode = None
-        self._seeds, self._next = [0] * num_envs, [0] * num_envs
-        self._cells = bool(cells)
+        self._episodes = [_Episodes(self._setting, cells) for _ in range(num_envs)]
         self._ended = np.zeros(num_envs, bool)
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
@@ -240,7 +248,7 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
                               'environments')
         for i, one in enumerate(seed or ()):
             if one is not None and mask[i]:
-                self._seeds[i], self._next[i] = one, 0
+                self._episodes[i].begin(int(one))
         self._begin(np.flatnonzero(mask))
         self._ended[mask] = False
         return self._observe(), self._inform()
@@ -248,16 +256,9 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
     def _begin(self, which: Any) -> None:
         """The next episode of some of them."""
         which = [int(i) for i in which]
-        scenes().reset_all([self._scenes[i] for i in which], [self._seeds[i] for i in which],
-                           [self._cell(i) for i in which], *self._noise, self._threads)
-        for i in which:
-            self._next[i] += 1
-
-    def _cell(self, i: int) -> int:
-        if self._cells:
-            return self._next[i]
-        random = np.random.default_rng((self._seeds[i], self._next[i]))
-        return int(random.integers(self._setting.task.cells * 1000))
+        episodes = [self._episodes[i] for i in which]
+        scenes().reset_all([self._scenes[i] for i in which], [one.seed for one in episodes],
+                           [one.next() for one in episodes], *self._noise, self._threads)
 
     def step(self, actions: NDArray[np.float64]) -> Any:
         actions = _doubles('actions', actions, 2)

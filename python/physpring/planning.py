@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from physpring import _core
 from physpring._plan_search import Plan, Search, hat_functions
-from physpring._recordings import number, whole
+from physpring._recordings import number, twin_of, whole
 from physpring._simulation import Simulator, _doubles
 
 Array = NDArray[np.float64]
@@ -60,7 +60,8 @@ class Planner:
                  obstacles: ArrayLike = (),
                  smoothness: float = 1e-3,
                  **simulator: Any):
-        self.simulator = Simulator(twin, level, **simulator)
+        given = twin_of(twin)
+        self.simulator = Simulator(given, level, **simulator)
         if (target_points is None) == (target_cost is None):
             raise _core.Error('one of target_points and target_cost is needed')
         whole('horizon', horizon, 1)
@@ -79,14 +80,14 @@ class Planner:
             raise _core.Error(f'grasps has not each of the {count} controllers once')
         self._max_speed, self._max_stretch = max_speed, max_stretch
         self._smoothness = smoothness
-        given = np.asarray(obstacles, float)
-        self._obstacles = _doubles('obstacles', given.reshape(0, 4) if given.size == 0 else given, 2)
+        rows = np.asarray(obstacles, float)
+        self._obstacles = _doubles('obstacles', rows.reshape(0, 4) if rows.size == 0 else rows, 2)
         if self._obstacles.shape[1] != 4 or not (np.isfinite(self._obstacles).all() and
                                                  (self._obstacles[:, 3:] > 0).all()):
             raise _core.Error('obstacles has a row of x, y, z and a radius above 0 for each')
-        springs = twin_level(twin, level)
-        self._springs, self._rest = springs.springs.copy(), springs.rest_length.copy()
-        self._size = springs.position.std(axis=0).max()  # of the object, m: the unit of lengths
+        of_level = given.levels[level]
+        self._springs, self._rest = of_level.springs.copy(), of_level.rest_length.copy()
+        self._size = of_level.position.std(axis=0).max()  # of the object, m: the unit of lengths
         self._left: Array | None = None  # the velocities of the last plan
 
     def _towards(self, target: Array, nodes: Sequence[int] | None) -> Cost:
@@ -239,12 +240,6 @@ class Planner:
             cost += float((inside**2).sum())
             bar -= (2 * inside / np.maximum(distance, 1e-12))[..., None] * d
         return cost, bar
-
-
-def twin_level(twin: _core.Twin | str | os.PathLike, level: int) -> _core.Level:
-    """One level of a twin, or of its file."""
-    given = twin if isinstance(twin, _core.Twin) else _core.Twin.load(twin)
-    return given.levels[level]
 
 
 def plan(twin: _core.Twin | str | os.PathLike,

@@ -143,3 +143,15 @@ def test_vector_goes_on_after_an_episode():
     assert not ended.any() and not rewards.any()
     expected = single.reset()[0]
     assert np.array_equal(seen['particles'][1], expected['particles'])
+
+
+def test_random_cells_are_the_same_in_vectors():
+    single = physpring.envs.TaskEnv('t_push', 3, cells=False)
+    vector = physpring.envs.TaskVectorEnv(2, 't_push', 3, cells=False)
+    seen, _ = vector.reset(seed=[3, 4])
+    episodes = []
+    for place, seed in enumerate([3, 4]):
+        alone, info = single.reset(seed=seed)
+        assert np.array_equal(seen['particles'][place], alone['particles'])
+        episodes.append(info['episode'])
+    assert episodes[0] != episodes[1]
