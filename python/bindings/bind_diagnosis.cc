@@ -2,25 +2,19 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <optional>
-
 #include "diagnosis/diagnosis.h"
 #include "jobs/diagnosis_input.h"
-#include "jobs/remarks.h"
-#include "python/bindings/bindings.h"
+#include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
 #include "report/diagnosis/page.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_text.h"
-#include "twin/clock_offset.h"
-#include "twin/error.h"
 #include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
 
 namespace nb = nanobind;
-using Recordings = std::vector<const GivenRecording*>;
 
 // A diagnosis with what its page shows.
 struct Finding {
@@ -29,33 +23,36 @@ struct Finding {
   std::string path;  // of the twin
 };
 
-void AddByClockOf(const Twin& twin, const Recordings& given, std::vector<Recording>* recordings,
-                  std::vector<std::string>* paths) {
+void AddByClockOf(const Twin& twin, const GivenRecordings& given,
+                  std::vector<Recording>* recordings, std::vector<std::string>* paths) {
   for (const GivenRecording* one : given) {
-    recordings->push_back(one->recording);
-    UseClockOf(twin, &recordings->back());
+    recordings->push_back(RecordingFor(twin, *one));
     paths->push_back(one->entry.path);
   }
 }
 
-Finding DiagnoseAll(const GivenTwin& twin, const Recordings& fit, const Recordings& held_out,
-                    const Recordings& before, std::uint64_t seed, int threads,
-                    const nb::object& callback) {
-  if (fit.empty()) throw Error("no recording is given");
-  Checked(twin);
-  std::vector<RecordingEntry> entries;
-  std::vector<Recording> to_fit;
-  for (const GivenRecording* one : fit) {
-    entries.push_back(one->entry);
-    to_fit.push_back(one->recording);
+void AddAllNewWarnings(const GivenRecordings& given, const std::vector<Recording>& recordings,
+                       std::vector<std::string>* warnings) {
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    AddNewWarnings(*given[i], recordings[i], warnings);
   }
+}
+
+Finding DiagnoseAll(const GivenTwin& twin, const GivenRecordings& fit,
+                    const GivenRecordings& held_out, const GivenRecordings& before,
+                    std::uint64_t seed, int threads, const nb::object& callback) {
   DiagnosisInput input;
-  input.data = ByClockOf(twin.twin, CollectFitData(entries, std::move(to_fit)));
+  input.data = ByClockOf(Checked(twin), FitDataOf(fit));
   AddByClockOf(twin.twin, held_out, &input.judged, &input.judged_paths);
   AddByClockOf(twin.twin, before, &input.before, &input.before_paths);
   ExpectApart(input);
   Finding finding;
   finding.recordings = CheckAndChoose(twin.twin, &input);
+  std::vector<std::string> warnings;
+  AddAllNewWarnings(fit, input.data.recordings, &warnings);
+  AddAllNewWarnings(held_out, input.judged, &warnings);
+  AddAllNewWarnings(before, input.before, &warnings);
+  Warn(warnings);
   finding.path = twin.path;
   RunWatched(callback, [&](const TellShare& tell) {
     Journal journal;

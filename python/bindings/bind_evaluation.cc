@@ -6,28 +6,19 @@
 #include <optional>
 
 #include "jobs/evaluation.h"
-#include "jobs/remarks.h"
 #include "python/bindings/arrays.h"
-#include "python/bindings/bindings.h"
+#include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
 #include "report/eval_report.h"
 #include "report/picture/page.h"
 #include "trainer/solvers/parallel.h"
-#include "twin/clock_offset.h"
 #include "twin/error.h"
 #include "twin/regrasp.h"
 
 namespace physpring {
 namespace {
 
-// A recording for a twin, by its clock.
-Recording RecordingFor(const Twin& twin, const GivenRecording& given) {
-  Recording recording = given.recording;
-  UseClockOf(twin, &recording);
-  return recording;
-}
-
-Evaluation EvaluateAll(const GivenTwin& twin, const std::vector<const GivenRecording*>& recordings,
+Evaluation EvaluateAll(const GivenTwin& twin, const GivenRecordings& recordings,
                        const EvaluationOptions& options, int threads) {
   if (recordings.empty()) throw Error("no recording is given");
   Checked(twin);
@@ -40,13 +31,11 @@ Evaluation EvaluateAll(const GivenTwin& twin, const std::vector<const GivenRecor
           twin.twin, recordings[i]->entry, RecordingFor(twin.twin, *recordings[i]), options);
     });
   });
-  std::vector<std::string> added;
+  std::vector<std::string> warnings;
   for (int i = 0; i < count; ++i) {
-    const auto& now = evaluation.recordings[i].recording.warnings;
-    const auto before = static_cast<std::ptrdiff_t>(recordings[i]->recording.warnings.size());
-    added.insert(added.end(), now.begin() + before, now.end());
+    AddNewWarnings(*recordings[i], evaluation.recordings[i].recording, &warnings);
   }
-  Warn(added);
+  Warn(warnings);
   Warn(WarningsOf(evaluation));
   return evaluation;
 }
@@ -93,9 +82,8 @@ void BindEvaluation(nb::module_& module) {
       nb::arg("recording"), nb::arg("level"));
   module.def(
       "evaluate",
-      [](const GivenTwin& twin, const std::vector<const GivenRecording*>& recordings,
-         std::optional<int> substeps, bool single_precision, std::optional<int> anchor,
-         int threads) {
+      [](const GivenTwin& twin, const GivenRecordings& recordings, std::optional<int> substeps,
+         bool single_precision, std::optional<int> anchor, int threads) {
         return EvaluateAll(twin, recordings,
                            {{single_precision, substeps.value_or(0)}, anchor.value_or(0)}, threads);
       },

@@ -36,7 +36,6 @@ void BindExport(nb::module_& module) {
     }
     return files;
   });
-  folder.def_prop_ro("text", [](const ExportedFolder& self) { return self.text; });
   folder.def(
       "write",
       [](const ExportedFolder& self, const std::string& path, bool force) {

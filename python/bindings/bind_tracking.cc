@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "jobs/tracking.h"
 #include "python/bindings/arrays.h"
-#include "python/bindings/bindings.h"
+#include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
 #include "tracker/track_recording.h"
-#include "twin/clock_offset.h"
 #include "twin/predict.h"
 #include "twin/regrasp.h"
 
@@ -13,8 +12,7 @@ namespace {
 
 nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, double hide,
                std::uint64_t seed) {
-  Recording recording = given.recording;
-  UseClockOf(Checked(twin), &recording);
+  Recording recording = RecordingFor(Checked(twin), given);
   ExpectSameObject(twin.twin, recording);
   const Twin held = HeldAsIn(&recording, twin.twin);
   TrackedMotion motion;

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "jobs/checkpoint.h"
-#include "jobs/remarks.h"
 #include "jobs/train_options_json.h"
 #include "jobs/training.h"
-#include "python/bindings/bindings.h"
+#include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
@@ -45,33 +41,14 @@ TrainOptions OptionsOf(const Wishes& wishes) {
   return options;
 }
 
-FitData DataOf(const std::vector<const GivenRecording*>& given) {
-  if (given.empty()) throw Error("no recording is given");
-  std::vector<RecordingEntry> entries;
-  std::vector<Recording> recordings;
-  for (const GivenRecording* one : given) {
-    entries.push_back(one->entry);
-    recordings.push_back(one->recording);
-  }
-  return CollectFitData(entries, std::move(recordings));
-}
-
-// Warnings that were not there when the recordings were given.
-std::vector<std::string> NewWarnings(const std::vector<const GivenRecording*>& given,
-                                     const FitData& data) {
-  std::vector<std::string> added;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const std::vector<std::string>& before = given[i]->recording.warnings;
-    const std::vector<std::string>& now = data.recordings[i].warnings;
-    added.insert(added.end(), now.begin() + static_cast<std::ptrdiff_t>(before.size()), now.end());
-  }
-  return added;
-}
-
-nb::tuple Train(const std::vector<const GivenRecording*>& recordings, const Wishes& wishes,
+GivenTwin Train(const GivenRecordings& recordings, const Wishes& wishes,
                 const nb::object& callback) {
-  TrainingTask task{DataOf(recordings), OptionsOf(wishes), std::nullopt};
-  Warn(NewWarnings(recordings, task.data));
+  TrainingTask task{FitDataOf(recordings), OptionsOf(wishes), std::nullopt};
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    AddNewWarnings(*recordings[i], task.data.recordings[i], &warnings);
+  }
+  Warn(warnings);
   if (wishes.from) {
     ExpectLevel0Of(task.data, Checked(*wishes.from), wishes.from->path);
     task.dense = wishes.from->twin;
@@ -95,7 +72,7 @@ nb::tuple Train(const std::vector<const GivenRecording*>& recordings, const Wish
   Warn(report.warnings);
   if (wishes.output.empty()) run.twin.name = recordings[0]->recording.name;
   const std::string path = wishes.output.empty() ? run.twin.name : wishes.output;
-  return nb::make_tuple(GivenTwin{path, run.twin}, report.line, run.parts);
+  return {path, run.twin};
 }
 
 }  // namespace
@@ -103,10 +80,9 @@ nb::tuple Train(const std::vector<const GivenRecording*>& recordings, const Wish
 void BindTraining(nb::module_& module) {
   module.def(
       "train",
-      [](const std::vector<const GivenRecording*>& recordings, const std::string& options_json,
-         std::uint64_t seed, int threads, const GivenTwin* from, const GivenTwin* effects,
-         const std::string& output, bool resume, bool force, double checkpoint_interval,
-         const nb::object& callback) {
+      [](const GivenRecordings& recordings, const std::string& options_json, std::uint64_t seed,
+         int threads, const GivenTwin* from, const GivenTwin* effects, const std::string& output,
+         bool resume, bool force, double checkpoint_interval, const nb::object& callback) {
         return Train(recordings,
                      {options_json, seed, threads, from, effects, output, resume, force,
                       checkpoint_interval},

@@ -72,8 +72,6 @@ void RunWatched(const nb::object& callback,
   RequestStop(false);
   try {
     done.get();
-  } catch (const Stopped&) {
-    if (!stopped) throw;
   } catch (...) {
     if (!stopped) throw;
   }

@@ -50,7 +50,7 @@ def train(recordings: RecordingLike | Iterable[RecordingLike],
     number('checkpoint_interval', checkpoint_interval, 0, 1e9)
     wishes = {'levels': levels, **{key: value for key, value in options.items() if value is not None}}
     try:
-        twin, _, _ = _core.train(
+        return _core.train(
             recordings_of(recordings, 'fit'),
             options_json=_json(wishes),
             seed=seed_of(seed),
@@ -64,7 +64,6 @@ def train(recordings: RecordingLike | Iterable[RecordingLike],
             callback=callback)
     except _core.Error as error:
         raise _core.Error(in_words_of_python(str(error))) from None
-    return twin
 
 
 def in_words_of_python(line: str) -> str:
