@@ -120,7 +120,7 @@ std::vector<Points> ResampleTracks(const std::vector<Points>& measured,
 std::vector<Points> ResamplePaths(const std::vector<Points>& measured,
                                   const std::vector<double>& times, const FrameGrid& grid) {
   const int columns = static_cast<int>(measured[0].cols());
-  std::vector<Points> frames(static_cast<std::size_t>(grid.frames), Points(3, columns));
+  std::vector<Points> frames(static_cast<std::size_t>(grid.frames));
   for (int t = 0; t < grid.frames; ++t) {
     const double time = grid.Time(t);
     const int nearest = Nearest(times, time), before = LastBefore(times, time);
@@ -129,6 +129,7 @@ std::vector<Points> ResamplePaths(const std::vector<Points>& measured,
       frames[t] = measured[nearest];
       continue;
     }
+    frames[t].resize(3, columns);
     for (int i = 0; i < columns; ++i) {
       frames[t].col(i) = OnCurve(measured, times, before, i, time);
     }
