@@ -6,7 +6,7 @@ import dataclasses
 import html
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,8 +31,9 @@ Array = NDArray[np.float64]
 class Evaluation:
     """How far a twin is from recordings. `print` shows the tables of `physpring eval`."""
 
-    def __init__(self, result: _core.EvaluationResult):
+    def __init__(self, result: _core.EvaluationResult, recordings: Sequence[_core.Recording]):
         self._result = result
+        self._recordings = recordings
 
     def to_dict(self) -> dict[str, Any]:
         """What `physpring eval --json` writes (docs/eval.md); lengths in metres."""
@@ -56,6 +57,28 @@ class Evaluation:
         with open(path, 'w', encoding='utf-8') as file:
             file.write(self._result.html())
 
+    def save_rerun(self, path: str | os.PathLike) -> None:
+        """Writes a file NAME.rrd for the Rerun viewer: measured points, what each level predicts of
+        them, controllers, and errors [m], frame by frame. Needs the extra `rerun`."""
+        import rerun  # pylint: disable=import-outside-toplevel
+        stream = rerun.RecordingStream('physpring')
+        stream.save(os.fspath(path))
+        levels = range(len(self.to_dict()['levels']))
+        for number, recording in enumerate(self._recordings):
+            name = f'{number}_{recording.name}'
+            predicted = [self.points(number, level) for level in levels]
+            errors = [self.errors(number, level) for level in levels]
+            for frame, measured in enumerate(recording.points):
+                stream.set_time('frame', sequence=frame)
+                stream.set_time('time', duration=frame / recording.fps)
+                stream.log(f'{name}/measured', rerun.Points3D(_seen(measured), colors=_MEASURED))
+                stream.log(f'{name}/controllers', rerun.Points3D(recording.controllers[frame]))
+                for level in levels:
+                    stream.log(f'{name}/level_{level}', rerun.Points3D(predicted[level][frame]))
+                    if np.isfinite(errors[level][frame]):
+                        stream.log(f'{name}/error/level_{level}', rerun.Scalars(errors[level][frame]))
+        stream.flush()
+
     def __str__(self) -> str:
         return self._result.text()
 
@@ -66,6 +89,13 @@ class Evaluation:
 
     def _repr_html_(self) -> str:
         return f'<pre>{html.escape(str(self))}</pre>'
+
+
+_MEASURED = (40, 40, 40)  # RGB, as on the pages of `eval`
+
+
+def _seen(points: Array) -> Array:
+    return points[np.isfinite(points).all(axis=1)]
 
 
 def _millimetres(level: dict[str, Any]) -> str:
@@ -93,9 +123,10 @@ def evaluate(twin: _core.Twin | str | os.PathLike,
     the same time. A twin that is no better than what needs no twin is a PhyspringWarning.
     """
     _expect_counts(substeps=substeps, anchor=anchor)
+    one, given = twin_of(twin), recordings_of(recordings, 'heldout')
     return Evaluation(
-        _core.evaluate(twin_of(twin), recordings_of(recordings, 'heldout'), substeps,
-                       precision_of(precision), anchor, threads_of(threads)))
+        _core.evaluate(one, given, substeps, precision_of(precision), anchor, threads_of(threads)),
+        given)
 
 
 def predict(twin: _core.Twin | str | os.PathLike,

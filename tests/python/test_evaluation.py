@@ -73,3 +73,21 @@ def test_track_finds_what_is_hidden(twin, other_recording, tmp_path):
         assert np.array_equal(states['position'], found.position.astype(np.float32))
     with pytest.raises(physpring.Error, match='hide is 1'):
         physpring.track(twin, other_recording, hide=1)
+
+
+def test_is_written_for_rerun(twin, recording, tmp_path):
+    chunk = pytest.importorskip('rerun.chunk')
+    evaluation = physpring.evaluate(twin, recording)
+    evaluation.save_rerun(tmp_path / 'chain.rrd')
+    rows, errors = {}, []
+    for one in chunk.RrdReader(str(tmp_path / 'chain.rrd')).stream():
+        rows[one.entity_path] = rows.get(one.entity_path, 0) + one.num_rows
+        if one.entity_path == f'/0_{recording.name}/error/level_1':
+            batch = one.to_record_batch()
+            column = next(name for name in batch.schema.names if 'scalars' in name.lower())
+            errors += [value[0] for value in batch.column(column).to_pylist()]
+    frames = len(recording.points)
+    for what in ('measured', 'controllers', 'level_0', 'level_1'):
+        assert rows[f'/0_{recording.name}/{what}'] == frames
+    expected = evaluation.errors(0, 1)
+    np.testing.assert_array_equal(errors, expected[np.isfinite(expected)])
