@@ -23,6 +23,7 @@ struct ExportArguments {
   std::string twin, output;
   bool force = false;
   ExportOptions options;
+  ExportedSamples samples;
 };
 
 // `text` as a word for the shell.
@@ -57,7 +58,8 @@ std::string CommandLine(const CLI::App& command) {
 void Run(const ExportArguments& arguments, const std::string& command_line) {
   const Twin read = ReadTwin(arguments.twin);
   WarnIfUnfinished(read, arguments.twin);
-  const ExportedFolder folder = MakeExport(read, arguments.options, command_line);
+  const ExportedFolder folder =
+      MakeExport(read, arguments.options, command_line, arguments.samples);
   WriteFolder(arguments.output, folder.files, arguments.force);
   for (const std::string& warning : folder.warnings) {
     Tell("warning: {}: {}\n", arguments.twin, warning);
@@ -115,6 +117,14 @@ void AddExportCommand(CLI::App& app) {
       ->type_name("DIR");
   command->add_flag("--force", arguments->force, "write into a folder that has files in it");
   AddModelOptions(command, &arguments->options);
+  command
+      ->add_option("--samples", arguments->samples.count,
+                   "so many twins beside it that are as likely by the recordings, each in a folder "
+                   "sample_NNNN of the same kind: for domain randomisation")
+      ->check(WholeNumberBetween(0, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  AddSeed(command, &arguments->samples.seed, "of the samples");
   command->callback([arguments, command] { Run(*arguments, CommandLine(*command)); });
 }
 

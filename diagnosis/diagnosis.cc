@@ -96,12 +96,6 @@ bool HasNotSeenHeldOut(const Twin& twin, const DiagnosisRecordings& recordings) 
                      [](const Recording& r) { return r.train_frames < r.frame_count(); });
 }
 
-std::ptrdiff_t EffectValueCount(const std::vector<EffectValues>& effects) {
-  std::ptrdiff_t count = 0;
-  for (const EffectValues& effect : effects) count += effect.values.size();
-  return count;
-}
-
 // The verdict's effects behind those that were known.
 std::vector<EffectValues> NewEffects(const Verdict& verdict,
                                      const std::vector<EffectValues>& known) {
@@ -114,6 +108,8 @@ std::vector<EffectValues> NewEffects(const Verdict& verdict,
 Twin TwinWith(Twin twin, const Verdict& verdict, std::size_t own,
               const std::vector<SplitRecording>& splits) {
   twin.training_state.clear();
+  twin.material.reset();  // they are of level 0 as it was
+  twin.posterior = {};
   const auto first = verdict.system.effects.begin() + static_cast<long>(own);
   for (TwinLevel& level : twin.levels) {
     std::vector<EffectValues>& effects = level.system.effects;

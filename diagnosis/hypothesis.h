@@ -30,11 +30,7 @@ struct Hypothesis {
       {};  // where the body is a smooth one, not of common factors
 
   // How many parameters all effects have.
-  Eigen::Index ParameterCount() const {
-    Eigen::Index count = 0;
-    for (const EffectValues& effect : effects) count += effect.values.size();
-    return count;
-  }
+  Eigen::Index ParameterCount() const { return EffectValueCount(effects); }
   // How many the new effect has, and its name; 0 and empty without any.
   Eigen::Index NewParameters() const { return effects.empty() ? 0 : effects.back().values.size(); }
   std::string NewEffect() const { return effects.empty() ? "" : effects.back().name; }

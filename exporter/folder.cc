@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -25,6 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kRandom = "XXXXXX";
+constexpr std::string_view kSample = "sample_";
+constexpr int kSampleDigits = 4;
 
 // Begins the names of the drafts of a folder, which are beside it.
 std::string DraftPrefix(const fs::path& target) {
@@ -86,8 +89,12 @@ class Replacement {
       : from_(std::move(from)), to_(std::move(to)), aside_(std::move(aside)) {}
   ~Replacement() {
     std::error_code ignored;
-    for (const std::string& name : placed_) fs::remove(to_ / name, ignored);
-    for (const std::string& name : moved_) fs::rename(aside_ / name, to_ / name, ignored);
+    for (const std::string& name : placed_) fs::remove_all(to_ / name, ignored);
+    for (const std::string& name : moved_) {
+      // a folder that is there is the new one; a file is replaced by renaming
+      if (fs::is_directory(aside_ / name)) fs::remove_all(to_ / name, ignored);
+      fs::rename(aside_ / name, to_ / name, ignored);
+    }
   }
   Replacement(const Replacement&) = delete;
   Replacement& operator=(const Replacement&) = delete;
@@ -95,16 +102,22 @@ class Replacement {
   void Replace(const std::string& name, std::error_code* error) {
     const fs::path old = to_ / name;
     const fs::file_status status = fs::symlink_status(old);
-    if (fs::is_directory(status)) *error = std::make_error_code(std::errc::is_a_directory);
-    if (*error) return;
-    if (fs::exists(status)) {
+    const bool folder = fs::is_directory(from_ / name);
+    if (fs::is_directory(status) != folder && fs::exists(status)) {
+      *error =
+          std::make_error_code(folder ? std::errc::not_a_directory : std::errc::is_a_directory);
+      return;
+    }
+    if (!fs::exists(status)) {
+      placed_.push_back(name);
+    } else if (folder) {
+      TakeAway(name, error);
+    } else {
       fs::create_hard_link(old, aside_ / name, *error);  // so that it is missing at no time
       if (*error)
         TakeAway(name, error);  // a file system without links
       else
         moved_.push_back(name);
-    } else {
-      placed_.push_back(name);
     }
     if (!*error) fs::rename(from_ / name, old, *error);
   }
@@ -132,13 +145,27 @@ bool IsLevelFile(std::string_view name) {
   return name.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// Levels of an earlier export that `files` does not bring again.
-std::vector<std::string> OtherLevels(const fs::path& folder,
-                                     const std::map<std::string, std::string>& files) {
+// sample_0007
+bool IsSampleFolder(std::string_view name) {
+  if (!name.starts_with(kSample) || name.size() < kSample.size() + kSampleDigits) return false;
+  name.remove_prefix(kSample.size());
+  return name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// The first parts of the names of files: what is replaced as a whole.
+std::set<std::string> UnitsOf(const std::map<std::string, std::string>& files) {
+  std::set<std::string> units;
+  for (const auto& [name, content] : files) units.insert(name.substr(0, name.find('/')));
+  return units;
+}
+
+// Levels and samples of an earlier export that do not come again.
+std::vector<std::string> OthersThan(const std::set<std::string>& units, const fs::path& folder) {
   std::vector<std::string> others;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (IsLevelFile(name) && !files.contains(name)) others.push_back(name);
+    const bool ours = IsLevelFile(name) || (IsSampleFolder(name) && entry.is_directory());
+    if (ours && !units.contains(name)) others.push_back(name);
   }
   return others;
 }
@@ -149,10 +176,11 @@ void ReplaceFiles(const fs::path& draft, const fs::path& target,
   const fs::path aside = draft / "replaced";
   fs::create_directory(aside, *error);
   Replacement replacement(draft, target, aside);
-  for (const auto& [name, content] : files) {
-    if (!*error) replacement.Replace(name, error);
+  const std::set<std::string> units = UnitsOf(files);
+  for (const std::string& unit : units) {
+    if (!*error) replacement.Replace(unit, error);
   }
-  for (const std::string& other : OtherLevels(target, files)) {
+  for (const std::string& other : OthersThan(units, target)) {
     if (!*error) replacement.TakeAway(other, error);
   }
   if (!*error) replacement.Keep();
@@ -162,6 +190,8 @@ void ReplaceFiles(const fs::path& draft, const fs::path& target,
 void WriteInto(const fs::path& draft, const std::string& name, const std::string& content,
                const fs::path& target) {
   try {
+    std::error_code ignored;  // the file then cannot be written, which is told
+    fs::create_directories((draft / name).parent_path(), ignored);
     WriteFileAtomically(draft / name, content);
   } catch (const Error& error) {
     const std::string what = error.what();
@@ -170,6 +200,10 @@ void WriteInto(const fs::path& draft, const std::string& name, const std::string
 }
 
 }  // namespace
+
+std::string SampleFolder(int index) {
+  return fmt::format("{}{:0{}}", kSample, index, kSampleDigits);
+}
 
 void WriteFolder(const std::string& path, const std::map<std::string, std::string>& files,
                  bool force) {

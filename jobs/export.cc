@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "exporter/export.h"
+#include "exporter/folder.h"
+#include "report/material_text.h"
 #include "twin/free_twin.h"
 
 namespace physpring {
@@ -34,10 +36,8 @@ std::string DescribeLevel(const ExportedLevel& level) {
                     1e3 * rounding.rest_length_max, level.flexes.tendons.size());
 }
 
-}  // namespace
-
-ExportedFolder MakeExport(const Twin& twin, const ExportOptions& options,
-                          const std::string& command) {
+ExportedFolder ExportOne(const Twin& twin, const ExportOptions& options,
+                         const std::string& command) {
   const bool free = options.controllers == ControllerKind::kNone;
   const Twin exported = free ? WithoutControllers(twin) : twin;
   Export result = ExportTwin(exported, options, command);
@@ -46,6 +46,36 @@ ExportedFolder MakeExport(const Twin& twin, const ExportOptions& options,
   folder.files = std::move(result.files);
   folder.warnings = std::move(result.warnings);
   return folder;
+}
+
+}  // namespace
+
+ExportedFolder MakeExport(const Twin& twin, const ExportOptions& options,
+                          const std::string& command, const ExportedSamples& samples) {
+  ExportedFolder folder = ExportOne(twin, options, command);
+  for (int i = 0; i < samples.count; ++i) {
+    const Twin sample = SampleOf(twin, samples.seed, i);
+    for (auto& [name, content] : ExportOne(sample, options, command).files) {
+      folder.files[SampleFolder(i) + "/" + name] = std::move(content);
+    }
+  }
+  if (samples.count == 0) return folder;
+  folder.text += fmt::format("{} samples of the posterior: {} to {}\n", samples.count,
+                             SampleFolder(0), SampleFolder(samples.count - 1));
+  for (std::string& warning : WarningsOfSamples(twin)) {
+    folder.warnings.push_back(std::move(warning));
+  }
+  return folder;
+}
+
+std::vector<std::string> WarningsOfSamples(const Twin& twin) {
+  if (!twin.material) return {};
+  const std::vector<std::string> untold = UntoldOf(*twin.material);
+  if (untold.empty()) return {};
+  return {
+      fmt::format("the recordings do not tell to a factor of 2: {}; the truth may be further off "
+                  "than the samples",
+                  fmt::join(untold, ", "))};
 }
 
 }  // namespace physpring

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <optional>
 
+#include "trainer/bodies/factors.h"
 #include "trainer/data/held_back.h"
 #include "trainer/fits/net_fit.h"
 #include "trainer/motion/residual_correlation.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/plausibility.h"
+#include "twin/stability.h"
 
 namespace physpring {
 namespace {
@@ -68,6 +70,20 @@ std::string WhatIsLeft(const Twin& twin, const FitData& data, const TrainOptions
   return line;
 }
 
+// One more line if level 0 is as stiff as its fit could make it; else empty.
+std::string AtTheStiffest(const Twin& twin, const FitData& data, const TrainOptions& options) {
+  constexpr double kNear = 1.01;  // a fit stays a little below
+  const double rate = MostRate(options, data.recordings[0]);
+  const double stable = ComputeStabilityBound(twin.levels[0].system).timestep;
+  if (options.method == TrainOptions::Method::kTwoStage || stable > kNear / (rate * kStepSafety)) {
+    return "";
+  }
+  return fmt::format(
+      "\nlevel 0 is as stiff as {:g} sub-steps a second allow: the object may be stiffer, and then "
+      "its material is not the one below (--substeps N allows more, N in a frame)",
+      rate);
+}
+
 std::string InMillimetres(const std::optional<double>& error) {
   return error ? fmt::format("{:.3f} mm", 1e3 * *error) : "no data";
 }
@@ -121,7 +137,7 @@ FitReport JudgeFit(const Twin& twin, const FitData& data, const TrainOptions& op
   report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
                             InMillimetres(fit), InMillimetres(still));
   if (later) report.line += fmt::format("; on the later ones: {}", InMillimetres(later));
-  report.line += "\n" + WhatIsLeft(twin, data, options);
+  report.line += "\n" + WhatIsLeft(twin, data, options) + AtTheStiffest(twin, data, options);
   const std::string little = LittleExplained(results, first, split, data.recordings[0]);
   if (!little.empty()) report.warnings.push_back(little);
   if (later && report.warnings.empty()) {

@@ -34,26 +34,33 @@ std::string LengthsOf(const Material::LengthClass& one) {
 
 }  // namespace
 
-std::string DescribeMaterial(const Material& material) {
+std::vector<std::string> UntoldOf(const Material& material) {
   double stiffest = 0;
   for (const auto& one : material.classes) {
     stiffest = std::max(stiffest, one.axial_stiffness.value);
   }
+  std::vector<std::string> untold;
+  for (const auto& one : material.classes) {
+    const bool weak = one.axial_stiffness.high < kWeak * stiffest;
+    if (!weak && !one.axial_stiffness.IsTold()) untold.push_back("springs of " + LengthsOf(one));
+  }
+  if (!material.loss_time.IsTold()) untold.emplace_back("the loss time");
+  if (!material.drag.IsTold()) untold.emplace_back("drag");
+  return untold;
+}
+
+std::string DescribeMaterial(const Material& material) {
   std::string text =
       "material, with 90 % intervals; a spring's stiffness is the first number over its length\n";
-  std::vector<std::string> untold;
   for (const auto& one : material.classes) {
     text += fmt::format("  {:<24} {} springs of {}\n", Words(one.axial_stiffness, " N"),
                         one.springs, LengthsOf(one));
-    const bool weak = one.axial_stiffness.high < kWeak * stiffest;
-    if (!weak && !one.axial_stiffness.IsTold()) untold.push_back("springs of " + LengthsOf(one));
   }
   text += fmt::format("  loss time {}, drag {}\n", Words(material.loss_time, " ms", 1e3),
                       Words(material.drag, " 1/s"));
   text += fmt::format("  softest place {}\n  stiffest place {}\n", Words(material.softest),
                       Words(material.stiffest));
-  if (!material.loss_time.IsTold()) untold.emplace_back("the loss time");
-  if (!material.drag.IsTold()) untold.emplace_back("drag");
+  const std::vector<std::string> untold = UntoldOf(material);
   if (untold.empty()) return text;
   return text + fmt::format("  these recordings do not tell to a factor of 2: {}\n",
                             fmt::join(untold, ", "));

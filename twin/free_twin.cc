@@ -44,6 +44,7 @@ Twin WithoutControllers(Twin twin) {
   const int nodes = twin.levels[0].system.node_count();
   if (twin.order.size() > 0) twin.order = twin.order.head(nodes).eval();
   twin.training_state.clear();
+  twin.posterior = {};
   return twin;
 }
 

@@ -7,8 +7,9 @@
 
 namespace physpring {
 
-// `twin` without its controllers, the springs that join them to nodes, and what training left. The
-// springs that remain keep their order. Throws Error if a level has no spring between nodes.
+// `twin` without its controllers, the springs that join them to nodes, its posterior and what
+// training left. The springs that remain keep their order. Throws Error if a level has no spring
+// between nodes.
 Twin WithoutControllers(Twin twin);
 
 }  // namespace physpring

@@ -15,6 +15,7 @@
 #include "twin/linear_predictor.h"
 #include "twin/material.h"
 #include "twin/npz.h"
+#include "twin/posterior.h"
 #include "twin/spring_mass_system.h"
 
 namespace physpring {
@@ -55,6 +56,7 @@ struct Twin {
   TrainedGround ground;
 
   std::optional<Material> material;  // of level 0, if its fit estimates it
+  Posterior posterior;               // of level 0; empty if its fit does not estimate it
   LinearPredictor linear;            // of the recordings that it was trained on; may be empty
 
   // How much later the controllers of its recordings moved than their clock says, s; none: not

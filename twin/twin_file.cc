@@ -47,6 +47,14 @@ void StoreLinear(const LinearPredictor& linear, Npz& arrays) {
   arrays["linear/mean"] = StoreVector(linear.mean);
 }
 
+void StorePosterior(const Posterior& posterior, Npz& arrays) {
+  arrays["posterior/stiffness"] = StoreMatrix(posterior.stiffness);
+  arrays["posterior/loss_time"] = StoreMatrix(posterior.loss_time);
+  arrays["posterior/drag"] = StoreVector(posterior.drag);
+  arrays["posterior/contact"] = StoreMatrix(posterior.contact);
+  arrays["posterior/effects"] = StoreMatrix(posterior.effects);
+}
+
 void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) {
   const SpringMassSystem& system = level.system;
   arrays[prefix + "position"] =
@@ -137,6 +145,7 @@ Npz StoreTwin(const Twin& twin, const std::string& path) {
     arrays["late"] = NpzArray::Ints({late.size()}, late.data());
   }
   if (!twin.linear.empty()) StoreLinear(twin.linear, arrays);
+  if (!twin.posterior.empty()) StorePosterior(twin.posterior, arrays);
   for (std::size_t n = 0; n < twin.levels.size(); ++n) {
     StoreLevel(twin.levels[n], LevelPrefix(n), arrays);
   }
@@ -298,6 +307,19 @@ LinearPredictor ReadLinear(NpzFields* fields, int points, int controllers) {
   return linear;
 }
 
+Posterior ReadPosterior(NpzFields* fields, const SpringMassSystem& dense) {
+  fields->SetExtent("springs", ExtentOf(dense.spring_count()));
+  fields->SetExtent("coefficients", ExtentOf(kContactCount));
+  fields->SetExtent("values of effects", ExtentOf(EffectValueCount(dense.effects)));
+  Posterior posterior;
+  posterior.stiffness = fields->Matrix("posterior/stiffness", "directions", "springs");
+  posterior.loss_time = fields->Matrix("posterior/loss_time", "directions", "springs");
+  posterior.drag = fields->Vector("posterior/drag", "directions");
+  posterior.contact = fields->Matrix("posterior/contact", "directions", "coefficients");
+  posterior.effects = fields->Matrix("posterior/effects", "directions", "values of effects");
+  return posterior;
+}
+
 }  // namespace
 
 Twin ParseTwin(const Npz& arrays, const std::string& path) {
@@ -328,6 +350,10 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   SpreadOrder(&twin);
   if (fields.Has("late")) twin.late = ReadLate(&fields, controllers);
   if (fields.Has("linear/mean")) twin.linear = ReadLinear(&fields, twin.points, controllers);
+
+  if (fields.Has("posterior/stiffness")) {
+    twin.posterior = ReadPosterior(&fields, twin.levels[0].system);
+  }
 
   for (const auto& [name, array] : arrays) {
     if (name.starts_with(kStatePrefix)) twin.training_state[name] = array;

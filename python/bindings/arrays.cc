@@ -51,6 +51,12 @@ NumpyDoubles CopyOf(const Eigen::VectorXd& numbers) {
   return Give(std::vector<double>(numbers.begin(), numbers.end()), {ExtentOf(numbers.size())});
 }
 
+NumpyDoubles CopyOf(const Eigen::MatrixXd& numbers) {
+  const Eigen::MatrixXd transposed = numbers.transpose();  // rows first
+  return Give(std::vector<double>(transposed.data(), transposed.data() + transposed.size()),
+              {ExtentOf(numbers.rows()), ExtentOf(numbers.cols())});
+}
+
 NumpyDoubles CopyOf(const std::vector<double>& numbers) { return Give(numbers, {numbers.size()}); }
 
 nb::ndarray<nb::numpy, int> CopyOf(const std::vector<int>& numbers) {

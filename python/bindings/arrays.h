@@ -29,6 +29,7 @@ constexpr auto kHasOwner = nb::rv_policy::reference;
 // Copies, owned by Python.
 NumpyDoubles CopyOf(const Points& points);                // (N, 3)
 NumpyDoubles CopyOf(const Eigen::VectorXd& numbers);      // (n)
+NumpyDoubles CopyOf(const Eigen::MatrixXd& numbers);      // (rows, columns)
 NumpyDoubles CopyOf(const std::vector<Points>& frames);   // (T, N, 3)
 NumpyDoubles CopyOf(const std::vector<double>& numbers);  // (n)
 nb::ndarray<nb::numpy, int> CopyOf(const std::vector<int>& numbers);

@@ -46,7 +46,7 @@ void BindExport(nb::module_& module) {
       "export_twin",
       [](const GivenTwin& twin, const std::string& command, const std::string& name, int level,
          const std::string& springs, const std::string& controllers, const std::string& contact,
-         int flexes, double timestep, const std::string& mesh) {
+         int flexes, double timestep, const std::string& mesh, int samples, std::uint64_t seed) {
         ExportOptions options;
         options.name = name;
         options.level = level;
@@ -56,7 +56,7 @@ void BindExport(nb::module_& module) {
         options.flexes = flexes;
         options.timestep = timestep;
         options.mesh = mesh;
-        ExportedFolder result = MakeExport(Checked(twin), options, command);
+        ExportedFolder result = MakeExport(Checked(twin), options, command, {samples, seed});
         std::vector<std::string> warnings;
         for (const std::string& warning : result.warnings) {
           warnings.push_back(twin.path + ": " + warning);
@@ -66,7 +66,7 @@ void BindExport(nb::module_& module) {
       },
       nb::arg("twin"), nb::arg("command"), nb::arg("name"), nb::arg("level"), nb::arg("springs"),
       nb::arg("controllers"), nb::arg("contact"), nb::arg("flexes"), nb::arg("timestep"),
-      nb::arg("mesh"));
+      nb::arg("mesh"), nb::arg("samples"), nb::arg("seed"));
 }
 
 }  // namespace physpring

@@ -7,12 +7,14 @@
 #include <nanobind/stl/vector.h>
 
 #include "jobs/checkpoint.h"
+#include "jobs/export.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "report/info_text.h"
 #include "report/material_text.h"
 #include "twin/contact_law.h"
 #include "twin/effects/effect_json.h"
+#include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/lift.h"
 #include "twin/stability.h"
@@ -35,6 +37,34 @@ std::string ReprOfTwin(const GivenTwin& given) {
                           level.system.node_count(), level.system.spring_count());
   }
   return fmt::format("<physpring.Twin '{}': {}>", given.twin.name, levels);
+}
+
+// What is left open of it, or None.
+nb::object PosteriorOf(const GivenTwin& given) {
+  const Posterior& posterior = given.twin.posterior;
+  if (posterior.empty()) return nb::none();
+  nb::dict arrays;
+  arrays["stiffness"] = CopyOf(posterior.stiffness);
+  arrays["loss_time"] = CopyOf(posterior.loss_time);
+  arrays["drag"] = CopyOf(posterior.drag);
+  arrays["contact"] = CopyOf(posterior.contact);
+  arrays["effects"] = CopyOf(posterior.effects);
+  return arrays;
+}
+
+std::vector<GivenTwin> SamplesOf(const GivenTwin& given, int count, std::uint64_t seed) {
+  if (count < 0) throw Error(fmt::format("n is {}, expected 0 or more", count));
+  const Twin& twin = Checked(given);
+  std::vector<GivenTwin> samples;
+  for (int i = 0; i < count; ++i) {
+    samples.push_back({fmt::format("{}, sample {}", given.path, i), SampleOf(twin, seed, i)});
+  }
+  std::vector<std::string> warnings;
+  for (const std::string& warning : WarningsOfSamples(twin)) {
+    warnings.push_back(given.path + ": " + warning);
+  }
+  Warn(warnings);
+  return samples;
 }
 
 // A property that is a view of a member, which may be written to; to set it copies numbers.
@@ -179,6 +209,18 @@ void BindTwin(nb::module_& module) {
         return names;
       },
       "(name, hash) of each recording.");
+  twin.def_prop_ro(
+      "posterior", &PosteriorOf,
+      "What the recordings leave open of level 0, a dict of arrays, or None. Each row is a\n"
+      "direction by one standard deviation: `stiffness` and `loss_time` (directions, springs),\n"
+      "`drag` (directions,) and `contact` (directions, coefficients) are changes of logarithms,\n"
+      "`effects` (directions, values of effects) of values.",
+      kHasOwner);
+  twin.def(
+      "sample", &SamplesOf, nb::arg("n"), nb::arg("seed") = 0,
+      "n twins that are as likely by the recordings: level 0 drawn from the posterior, the\n"
+      "coarser levels with it. Sample i of a seed is the same whatever n is. Warns of what the\n"
+      "recordings do not tell; raises Error for a twin without posterior.");
   twin.def("_material_text", [](const Class& self) {
     return self.twin.material ? DescribeMaterial(*self.twin.material) : std::string();
   });

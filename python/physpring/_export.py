@@ -7,7 +7,7 @@ import shlex
 from typing import TYPE_CHECKING
 
 from physpring import _core
-from physpring._recordings import number, twin_of, whole
+from physpring._recordings import number, seed_of, twin_of, whole
 from physpring._training import in_words_of_python
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ def export(twin: _core.Twin | str | os.PathLike,
            timestep: float | None = None,
            mesh: str | os.PathLike | None = None,
            name: str | None = None,
+           samples: int = 0,
+           seed: int = 0,
            force: bool = False) -> dict[str, bytes] | mujoco.MjSpec:
     """The levels of a twin as MuJoCo models, as `physpring export` makes them (docs/export.md).
 
@@ -33,7 +35,8 @@ def export(twin: _core.Twin | str | os.PathLike,
         returned as a mujoco.MjSpec, to be changed, attached or compiled.
     springs: 'auto', 'tendon', 'plugin' or 'flex'. controllers: 'auto', 'mocap', 'slide' or 'none'.
     contact: 'auto', 'mujoco', 'plugin' or 'none'. timestep: of the scenes, s. mesh: file of a
-    surface to draw. name: prefix of all names. force: write into a folder that has files in it.
+    surface to draw. name: prefix of all names. samples: so many twins beside it, as Twin.sample
+    draws them from `seed`, each in a folder sample_NNNN (only with `folder`). force: write into a folder that has files in it.
     """
     given = twin_of(twin)
     if folder is None and level is None:
@@ -44,9 +47,12 @@ def export(twin: _core.Twin | str | os.PathLike,
                                ('--controllers', controllers, 'auto'),
                                ('--contact', contact, 'auto'), ('--flexes', flexes, 8),
                                ('--timestep', timestep, None), ('--mesh', _base(mesh), None),
-                               ('--name', name, None)):
+                               ('--name', name, None), ('--samples', samples, 0), ('--seed', seed, 0)):
         if value != usual:
             words += [flag, str(value)]
+    whole('samples', samples, 0, 1000)
+    if samples and folder is None:
+        raise _core.Error('samples need a folder; Twin.sample gives them as twins')
     whole('flexes', flexes, 1, 1000)
     if level is not None:
         whole('level', level, 0, 1000)
@@ -56,7 +62,7 @@ def export(twin: _core.Twin | str | os.PathLike,
         raise _core.Error('folder is empty, expected the name of one')
     made = _core.export_twin(given, shlex.join(words), name or '', -1 if level is None else level,
                              springs, controllers, contact, flexes, timestep or 0.0,
-                             '' if mesh is None else os.fspath(mesh))
+                             '' if mesh is None else os.fspath(mesh), samples, seed_of(seed))
     if folder is not None:
         try:
             made.write(os.fspath(folder), force)

@@ -56,6 +56,35 @@ TEST_F(Export, TellsHowFlexesRound) {
       << result.output;
 }
 
+TEST_F(Export, WritesSamplesOfThePosterior) {
+  Twin twin = SmallTwin(2);
+  const SpringMassSystem& dense = twin.levels[0].system;
+  twin.posterior = {Eigen::MatrixXd::Constant(1, dense.spring_count(), 0.2),
+                    Eigen::MatrixXd::Zero(1, dense.spring_count()), Eigen::VectorXd::Zero(1),
+                    Eigen::MatrixXd::Zero(1, kContactCount), Eigen::MatrixXd(1, 0)};
+  WriteTwin(twin, TwinPath());
+  const ProgramResult result = Run({"--samples", "2", "--seed", "3"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_NE(result.output.find("2 samples of the posterior: sample_0000 to sample_0001"),
+            std::string::npos)
+      << result.output;
+  const auto file = [&](const std::string& name) { return ReadFile(Folder() + "/" + name); };
+  EXPECT_NE(file("sample_0000/level1.xml"), file("level1.xml"));
+  EXPECT_NE(file("sample_0000/level1.xml"), file("sample_0001/level1.xml"));
+  EXPECT_TRUE(std::filesystem::exists(Folder() + "/sample_0001/scene.xml"));
+  const std::string first = file("sample_0000/level0.xml");
+  EXPECT_EQ(Run({"--samples", "1", "--seed", "3", "--force"}).status, 0);
+  EXPECT_EQ(file("sample_0000/level0.xml"), first) << "whatever other samples there are";
+  EXPECT_FALSE(std::filesystem::exists(Folder() + "/sample_0001"));
+}
+
+TEST_F(Export, NeedsAPosteriorForSamples) {
+  const ProgramResult result = Run({"--samples", "2"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.errors.find("holds no posterior"), std::string::npos) << result.errors;
+  EXPECT_FALSE(Wrote());
+}
+
 TEST_F(Export, OverwritesOnlyIfForced) {
   EXPECT_EQ(Run({}).status, 0);
   EXPECT_TRUE(FailsWith(Run({}), Folder() + ": exists; --force overwrites"));

@@ -190,7 +190,7 @@ TEST_F(Train, ReportsWhereTheTimeWent) {
       "checkpoints";
   EXPECT_EQ(PartsOf(RunProgram(Short("full") + levels)),
             "choosing the model, common factors, single springs (Gauss-Newton), single springs "
-            "(Adam), " +
+            "(Adam), posterior, " +
                 coarse);
   const std::string from = folder_.File("from.twin.npz");
   std::filesystem::rename(twin_, from);

@@ -58,6 +58,27 @@ TEST(Folder, LosesLevelsThatAreNotExportedAgain) {
   EXPECT_FALSE(std::filesystem::exists(folder.File("scene_level1.xml")));
 }
 
+// Folders of samples come and go as a whole; what else is in the folder stays.
+TEST(Folder, ReplacesFoldersOfSamples) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("b");
+  EXPECT_EQ(SampleFolder(7), "sample_0007");
+  WriteFolder(path,
+              {{"x", "a"}, {"sample_0000/x", "b"}, {"sample_0000/y", "c"}, {"sample_0001/x", "d"}},
+              false);
+  EXPECT_EQ(ReadFile(path + "/sample_0000/y"), "c");
+  WriteFolder(path, {{"x", "e"}, {"sample_0000/x", "f"}}, true);
+  EXPECT_EQ(ReadFile(path + "/sample_0000/x"), "f");
+  EXPECT_FALSE(std::filesystem::exists(path + "/sample_0000/y"));
+  EXPECT_FALSE(std::filesystem::exists(path + "/sample_0001"));
+  std::filesystem::create_directory(path + "/z");  // no file can take its place: all stays
+  EXPECT_NE(MessageOf(path, {{"sample_0000/x", "g"}, {"sample_0001/x", "h"}, {"z", "i"}}, true),
+            "");
+  EXPECT_EQ(ReadFile(path + "/sample_0000/x"), "f");
+  EXPECT_FALSE(std::filesystem::exists(path + "/sample_0001"));
+  EXPECT_EQ(folder.count(), 1);
+}
+
 TEST(Folder, FillsAnEmptyOne) {
   const TemporaryFolder folder;
   WriteFolder(folder.path(), {{"x", "one"}}, false);
@@ -67,8 +88,8 @@ TEST(Folder, FillsAnEmptyOne) {
 TEST(Folder, FailsWithoutATrace) {
   const TemporaryFolder folder;
   const std::string path = folder.File("b");
-  // a name with a folder that is not there cannot be written
-  EXPECT_NE(MessageOf(path, {{"x", "one"}, {"z/y", "two"}}, false), "");
+  // no file has so long a name
+  EXPECT_NE(MessageOf(path, {{"x", "one"}, {"z/" + std::string(300, 'y'), "two"}}, false), "");
   EXPECT_EQ(folder.count(), 0);
 }
 

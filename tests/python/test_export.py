@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
+import warnings
+
 import numpy as np
 import physpring
 import pytest
@@ -29,6 +31,21 @@ def test_is_a_spec(twin, springs):
         mujoco.mj_step(model, data)
     assert np.isfinite(data.qpos).all()
     assert data.time > 0
+
+
+def test_samples_are_the_programs(twin, tmp_path):
+    twin.copy().save(tmp_path / 'chain.twin.npz')
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', physpring.PhyspringWarning)
+        physpring.export(tmp_path / 'chain.twin.npz', tmp_path / 'ours' / 'model', samples=2, seed=5)
+    run_program('export', tmp_path / 'chain.twin.npz', '-o', tmp_path / 'model', '--samples', 2, '--seed', 5)
+    ours = {path.relative_to(tmp_path / 'ours'): path.read_bytes()
+            for path in (tmp_path / 'ours').rglob('*') if path.is_file()}
+    assert ours == {path.relative_to(tmp_path): path.read_bytes()
+                    for path in (tmp_path / 'model').rglob('*') if path.is_file()}
+    mujoco.MjModel.from_xml_path(str(tmp_path / 'model' / 'sample_0001' / 'scene_level1.xml'))
+    with pytest.raises(physpring.Error, match='folder'):
+        physpring.export(twin, samples=2)
 
 
 def test_says_what_is_wrong(twin, tmp_path):

@@ -3,6 +3,7 @@ import os
 import signal
 import threading
 
+import numpy as np
 import physpring
 import pytest
 from conftest import QUICK, expect_same_arrays, run_program
@@ -116,3 +117,28 @@ def test_says_what_is_wrong(recording, other_recording, tmp_path):
     assert message(other_recording, from_twin=twin) == (
         'chain: was not trained on recording chain_b; from_twin needs a twin of the same recordings')
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.filterwarnings('ignore::physpring.PhyspringWarning')
+def test_samples_come_from_the_posterior(twin):
+    posterior = twin.posterior
+    springs = twin.levels[0].spring_count
+    directions = len(posterior['drag'])
+    assert posterior['stiffness'].shape == posterior['loss_time'].shape == (directions, springs)
+    assert posterior['contact'].shape == (directions, 2)
+    samples = twin.sample(3, seed=7)
+    assert [len(one.levels) for one in samples] == [2, 2, 2]
+    again = twin.sample(2, seed=7)
+    for one, other in zip(samples, again):
+        for level in range(2):
+            np.testing.assert_array_equal(one.levels[level].stiffness, other.levels[level].stiffness)
+    assert (samples[0].levels[0].stiffness != samples[1].levels[0].stiffness).any()
+    # logarithms of factors are a combination of the directions
+    change = np.log(samples[0].levels[0].stiffness / twin.levels[0].stiffness)
+    z = np.linalg.lstsq(posterior['stiffness'].T, change, rcond=None)[0]
+    np.testing.assert_allclose(posterior['stiffness'].T @ z, change, atol=1e-9)
+    assert samples[0].posterior is None
+    with pytest.raises(physpring.Error, match='no posterior'):
+        samples[0].sample(1)
+    with pytest.raises(physpring.Error, match='expected 0 or more'):
+        twin.sample(-1)

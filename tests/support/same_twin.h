@@ -32,6 +32,11 @@ inline void ExpectSameTwin(const Twin& a, const Twin& b) {
     EXPECT_EQ(a.levels[l].substeps_per_second, b.levels[l].substeps_per_second);
     ExpectSameSystem(a.levels[l].system, b.levels[l].system);
   }
+  EXPECT_EQ(a.posterior.stiffness, b.posterior.stiffness);
+  EXPECT_EQ(a.posterior.loss_time, b.posterior.loss_time);
+  EXPECT_EQ(a.posterior.drag, b.posterior.drag);
+  EXPECT_EQ(a.posterior.contact, b.posterior.contact);
+  EXPECT_EQ(a.posterior.effects, b.posterior.effects);
 }
 
 }  // namespace physpring

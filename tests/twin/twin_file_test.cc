@@ -74,6 +74,23 @@ TEST_F(TwinFile, KeepsTheMaterial) {
   EXPECT_THROW(WriteTwin(twin, path_), Error) << "the value is below its lower bound";
 }
 
+TEST_F(TwinFile, KeepsThePosterior) {
+  EXPECT_TRUE(ReadTwin(path_).posterior.empty()) << "files of older programs have none";
+  Twin twin = MakeTwin();
+  twin.posterior = {Eigen::MatrixXd::Random(2, 3), Eigen::MatrixXd::Random(2, 3),
+                    Eigen::VectorXd::Random(2), Eigen::MatrixXd::Random(2, kContactCount),
+                    Eigen::MatrixXd::Random(2, EffectValueCount(twin.levels[0].system.effects))};
+  WriteTwin(twin, path_);
+  const Posterior read = ReadTwin(path_).posterior;
+  EXPECT_EQ(read.stiffness, twin.posterior.stiffness);
+  EXPECT_EQ(read.loss_time, twin.posterior.loss_time);
+  EXPECT_EQ(read.drag, twin.posterior.drag);
+  EXPECT_EQ(read.contact, twin.posterior.contact);
+  EXPECT_EQ(read.effects, twin.posterior.effects);
+  twin.posterior.loss_time.resize(2, 4);
+  EXPECT_THROW(WriteTwin(twin, path_), Error) << "there are three springs";
+}
+
 TEST_F(TwinFile, KeepsTheLinearPredictor) {
   EXPECT_TRUE(ReadTwin(path_).linear.empty()) << "files of older programs have none";
   Twin twin = MakeTwin();

@@ -11,15 +11,16 @@
 #include "trainer/fits/clock_fit.h"
 #include "trainer/fits/material_estimate.h"
 #include "trainer/fits/net_fit.h"
+#include "trainer/fits/posterior_estimate.h"
 #include "twin/stability.h"
 
 namespace physpring {
 namespace {
 
-constexpr int kMostMaterialRecordings = 4;  // tell the material
+constexpr int kMostPosteriorRecordings = 4;
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kChosen = 0.25;
+constexpr double kChosen = 0.25, kFitted = 0.9;
 constexpr double kClocks = 0.25;  // of recordings of two clocks
 
 Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& data,
@@ -39,19 +40,30 @@ bool HaveTwoClocks(const FitData& data) {
   });
 }
 
+// The chosen body, fitted as its kind is.
+FittedNet FitBody(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
+                  const Work& work) {
+  if (chosen.body.kind->has_single_springs()) {
+    return FitNet(chosen, data, options, work.Part("net", kChosen, kFitted));
+  }
+  const ChosenBody chain = FitChain(chosen, data, options, work.Part("chain", kChosen, kFitted));
+  return {chain.System(data.recordings[0]), chain.body};
+}
+
 Twin FitByOneClock(const FitData& data, const TrainOptions& options, const Work& work) {
   const Recording& first = data.recordings[0];
   const ChosenBody chosen = ChooseBody(data, options, work.Part("choosing the model", 0, kChosen));
   work.Reached(TwinOf(chosen.System(first), chosen.body, data, options));
 
-  if (!chosen.body.kind->has_single_springs()) {
-    const ChosenBody chain = FitChain(chosen, data, options, work.Part("chain", kChosen, 1));
-    return TwinOf(chain.System(first), chain.body, data, options);
-  }
-  const FittedNet net = FitNet(chosen, data, options, work.Part("net", kChosen, 1));
-  Twin twin = TwinOf(net.system, net.body, data, options);
-  twin.material =
-      EstimateMaterial(net.system, net.body, FitEpisodes(data, kMostMaterialRecordings), options);
+  const auto [system, body] = FitBody(chosen, data, options, work);
+  Twin twin = TwinOf(system, body, data, options);
+  work.Reached(twin);
+  if (!body.kind->has_single_springs()) return twin;  // a chain: its samples predicted badly
+  const EstimatedPosterior posterior =
+      EstimatePosterior(system, body, FitEpisodes(data, kMostPosteriorRecordings), options,
+                        work.Part("posterior", kFitted, 1));
+  twin.posterior = posterior.samples;
+  twin.material = EstimateMaterial(system, posterior.intervals);
   return twin;
 }
 

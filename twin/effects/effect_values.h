@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 namespace physpring {
 
@@ -17,6 +18,13 @@ struct EffectValues {
     return name == other.name && values.size() == other.values.size() && values == other.values;
   }
 };
+
+// How many values they have together.
+inline Eigen::Index EffectValueCount(const std::vector<EffectValues>& effects) {
+  Eigen::Index count = 0;
+  for (const EffectValues& effect : effects) count += effect.values.size();
+  return count;
+}
 
 }  // namespace physpring
 

@@ -173,6 +173,20 @@ TEST(FitDense, SaysWhatTheMaterialIs) {
             found.loss_time.high / found.loss_time.value);
 }
 
+// Twins that are drawn differ, and predict about as well: what is left open hardly shows.
+TEST(FitDense, LeavesOpenWhatHardlyShows) {
+  SmoothRope rope = MakeSmoothRope();
+  AddNoise(&rope.data.recordings[0]);
+  const Twin twin = Fit(rope.data, OptionsOfSmoothRope(TrainOptions::Method::kSmooth));
+  ASSERT_FALSE(twin.posterior.empty());
+  const double fitted = TrackError(twin, rope.data.recordings[0]);
+  for (int i = 0; i < 12; ++i) {
+    const Twin sample = SampleOf(twin, 1, i);
+    EXPECT_NE(sample.levels[0].system.stiffness, twin.levels[0].system.stiffness);
+    EXPECT_LT(TrackError(sample, rope.data.recordings[0]), 1.5 * fitted) << i;
+  }
+}
+
 // A rope that nothing moves does not tell how lossy it is.
 TEST(FitDense, SaysWhatARecordingDoesNotTell) {
   SmoothRope rope = MakeSmoothRope();
@@ -243,7 +257,8 @@ TEST(FitDense, TellsHowFarItIs) {
   EXPECT_LE(log.shares.back(), 1);
   EXPECT_GT(log.parts["choosing the model"], 0);
   EXPECT_GT(log.parts["single springs (Gauss-Newton)"], 0);
-  ASSERT_EQ(log.reached.size(), 2u);
+  EXPECT_GT(log.parts["posterior"], 0);
+  ASSERT_EQ(log.reached.size(), 3u);  // the softest, the chosen and the fitted one
   for (const Twin& twin : log.reached) EXPECT_NO_THROW(twin.levels[0].system.Validate("twin"));
 }
 
