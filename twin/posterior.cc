@@ -142,6 +142,8 @@ Twin SampleOf(const Twin& twin, std::uint64_t seed, int index) {
   for (int level = 0; level < static_cast<int>(twin.levels.size()); ++level) {
     TwinLevel& one = sample.levels[static_cast<std::size_t>(level)];
     Apply(level == 0 ? move : MoveOfLevel(move, twin, level), &one.system);
+    one.system.Validate(
+        fmt::format("twin {}: sample {}: level {}", Quote(twin.name), index, level));
     SoftenStiffNodes(1 / (kMostSlower * one.substeps_per_second * kStepSafety), &one.system);
     const int needed = StableSubsteps(ComputeStabilityBound(one.system), 1, kStepSafety);
     const int before = StableSubsteps(

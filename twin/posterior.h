@@ -39,7 +39,8 @@ SpringMassSystem MovedAlong(const Posterior& posterior, const SpringMassSystem& 
 
 // Sample `index` of a twin: the same for the same seed, whatever other samples are drawn. A level
 // that needs more sub-steps than it was trained with gets them; springs that would need more than
-// twice as many are softened. Its own posterior, material and state of training are left out. Throws Error if the twin has no posterior.
+// twice as many are softened. Its own posterior, material and state of training are left out.
+// Throws Error if the twin has no posterior, or one that leads to numbers which no twin has.
 Twin SampleOf(const Twin& twin, std::uint64_t seed, int index);
 
 }  // namespace physpring

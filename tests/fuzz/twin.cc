@@ -43,6 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Twin twin = ParseTwin(arrays, "file");  // what is read can be described
     DescribeTwin(twin);
     TwinToJson(twin).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    if (!twin.posterior.empty()) SampleOf(twin, 1, 0);
   });
   return 0;
 }
@@ -57,6 +58,9 @@ std::vector<std::string> physpring::FuzzSeeds() {
   twin.order = Eigen::VectorXd::LinSpaced(4, 0, 0.3);
   twin.levels[0].system.effects = {{"tension_only", Eigen::VectorXd::Constant(1, 0.3)},
                                    {"air_drag", Eigen::VectorXd::Constant(4, 0.1)}};
+  twin.posterior = {Eigen::MatrixXd::Constant(2, 3, 0.1), Eigen::MatrixXd::Constant(2, 3, 0.2),
+                    Eigen::VectorXd::Constant(2, 0.3), Eigen::MatrixXd::Constant(2, 2, 0.1),
+                    Eigen::MatrixXd::Constant(2, 5, 0.1)};
   twin.ground = {.known = true, .plane = Eigen::Vector4d(0, 0, 1, -1)};
   twin.trained_on = {{"swing", "0123456789abcdef", 20}};
   twin.options_json = R"({"epochs":3,"a":[[1]]})";

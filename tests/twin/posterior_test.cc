@@ -162,6 +162,17 @@ TEST(SampleOf, GivesStiffLevelsTheSubstepsThatTheyNeed) {
   EXPECT_TRUE(stiffer);
 }
 
+TEST(SampleOf, RefusesNumbersThatNoTwinHas) {
+  Twin twin = TwinWithPosterior();
+  twin.posterior.stiffness.setConstant(1e6);  // finite, as a file may have it
+  try {
+    for (int i = 0; i < 4; ++i) SampleOf(twin, 0, i);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("sample"), std::string::npos) << error.what();
+  }
+}
+
 TEST(SampleOf, NeedsAPosterior) {
   EXPECT_THROW(SampleOf(SmallTwin(1), 0, 0), Error);
   EXPECT_TRUE(SampleOf(TwinWithPosterior(), 0, 0).posterior.empty());
