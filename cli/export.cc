@@ -115,7 +115,9 @@ void AddExportCommand(CLI::App& app) {
       ->required()
       ->check(NotEmpty())
       ->type_name("DIR");
-  command->add_flag("--force", arguments->force, "write into a folder that has files in it");
+  command->add_flag(
+      "--force", arguments->force,
+      "write into a folder that has files in it; levels and samples of an earlier export go");
   AddModelOptions(command, &arguments->options);
   command
       ->add_option("--samples", arguments->samples.count,

@@ -81,6 +81,37 @@ void RemoveAbandonedDrafts(const fs::path& target) {
   }
 }
 
+// level0.xml, scene_level12.xml ...
+bool IsLevelFile(std::string_view name) {
+  constexpr std::string_view kScene = "scene_", kLevel = "level", kEnding = ".xml";
+  if (name.starts_with(kScene)) name.remove_prefix(kScene.size());
+  if (!name.starts_with(kLevel) || !name.ends_with(kEnding)) return false;
+  if (name.size() <= kLevel.size() + kEnding.size()) return false;
+  name = name.substr(kLevel.size(), name.size() - kLevel.size() - kEnding.size());
+  return name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// sample_0007
+bool IsNameOfSample(std::string_view name) {
+  if (!name.starts_with(kSample) || name.size() < kSample.size() + kSampleDigits) return false;
+  name.remove_prefix(kSample.size());
+  return name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// Whether an export made the folder: there is nothing else in it.
+bool IsSampleFolder(const fs::path& folder) {
+  if (!IsNameOfSample(folder.filename().string())) return false;
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(folder, error))) return false;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const bool ours = name == "README.md" || name == "scene.xml" || IsLevelFile(name);
+    if (!ours || !entry->is_regular_file()) return false;
+  }
+  return !error;
+}
+
 // Gives new files the places of old ones, and those the places back unless all succeed.
 class Replacement {
  public:
@@ -103,9 +134,12 @@ class Replacement {
     const fs::path old = to_ / name;
     const fs::file_status status = fs::symlink_status(old);
     const bool folder = fs::is_directory(from_ / name);
-    if (fs::is_directory(status) != folder && fs::exists(status)) {
-      *error =
-          std::make_error_code(folder ? std::errc::not_a_directory : std::errc::is_a_directory);
+    if (folder && fs::exists(status) && !IsSampleFolder(old)) {
+      throw Error(
+          fmt::format("{}: is in the way of a sample, and no export made it", old.string()));
+    }
+    if (!folder && fs::is_directory(status)) {
+      *error = std::make_error_code(std::errc::is_a_directory);
       return;
     }
     if (!fs::exists(status)) {
@@ -135,23 +169,6 @@ class Replacement {
   std::vector<std::string> placed_, moved_;  // without and with an old file in `aside_`
 };
 
-// level0.xml, scene_level12.xml ...
-bool IsLevelFile(std::string_view name) {
-  constexpr std::string_view kScene = "scene_", kLevel = "level", kEnding = ".xml";
-  if (name.starts_with(kScene)) name.remove_prefix(kScene.size());
-  if (!name.starts_with(kLevel) || !name.ends_with(kEnding)) return false;
-  if (name.size() <= kLevel.size() + kEnding.size()) return false;
-  name = name.substr(kLevel.size(), name.size() - kLevel.size() - kEnding.size());
-  return name.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-// sample_0007
-bool IsSampleFolder(std::string_view name) {
-  if (!name.starts_with(kSample) || name.size() < kSample.size() + kSampleDigits) return false;
-  name.remove_prefix(kSample.size());
-  return name.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
 // The first parts of the names of files: what is replaced as a whole.
 std::set<std::string> UnitsOf(const std::map<std::string, std::string>& files) {
   std::set<std::string> units;
@@ -164,7 +181,7 @@ std::vector<std::string> OthersThan(const std::set<std::string>& units, const fs
   std::vector<std::string> others;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = IsLevelFile(name) || (IsSampleFolder(name) && entry.is_directory());
+    const bool ours = IsLevelFile(name) || IsSampleFolder(entry.path());
     if (ours && !units.contains(name)) others.push_back(name);
   }
   return others;

@@ -8,6 +8,7 @@
 #include "exporter/export.h"
 #include "exporter/folder.h"
 #include "report/material_text.h"
+#include "twin/error.h"
 #include "twin/free_twin.h"
 
 namespace physpring {
@@ -48,20 +49,34 @@ ExportedFolder ExportOne(const Twin& twin, const ExportOptions& options,
   return folder;
 }
 
+std::map<std::string, std::string> FilesOfSample(const Twin& twin, std::uint64_t seed, int index,
+                                                 const ExportOptions& options,
+                                                 const std::string& command) {
+  const Twin sample = SampleOf(twin, seed, index);
+  try {
+    ExportedFolder folder = ExportOne(sample, options, command);
+    folder.files["README.md"] += fmt::format(
+        "\nThis is sample {} of seed {}: not the fitted twin, but one drawn from its posterior.\n",
+        index, seed);
+    return std::move(folder.files);
+  } catch (const Error& error) {
+    throw Error(fmt::format("sample {}: {}", index, error.what()));
+  }
+}
+
 }  // namespace
 
 ExportedFolder MakeExport(const Twin& twin, const ExportOptions& options,
                           const std::string& command, const ExportedSamples& samples) {
   ExportedFolder folder = ExportOne(twin, options, command);
   for (int i = 0; i < samples.count; ++i) {
-    const Twin sample = SampleOf(twin, samples.seed, i);
-    for (auto& [name, content] : ExportOne(sample, options, command).files) {
+    for (auto& [name, content] : FilesOfSample(twin, samples.seed, i, options, command)) {
       folder.files[SampleFolder(i) + "/" + name] = std::move(content);
     }
   }
   if (samples.count == 0) return folder;
-  folder.text += fmt::format("{} samples of the posterior: {} to {}\n", samples.count,
-                             SampleFolder(0), SampleFolder(samples.count - 1));
+  folder.text += fmt::format("samples of the posterior: {} to {}\n", SampleFolder(0),
+                             SampleFolder(samples.count - 1));
   for (std::string& warning : WarningsOfSamples(twin)) {
     folder.warnings.push_back(std::move(warning));
   }

@@ -124,8 +124,9 @@ SpringMassSystem MovedAlong(const Posterior& posterior, const SpringMassSystem& 
 Twin SampleOf(const Twin& twin, std::uint64_t seed, int index) {
   if (twin.posterior.empty()) {
     throw Error(
-        fmt::format("twin {}: holds no posterior to draw samples from; a training with this "
-                    "program gives it one",
+        fmt::format("twin {}: holds no posterior to draw samples from (train gives one to nets of "
+                    "springs, not to "
+                    "chains, nor with --method two-stage)",
                     Quote(twin.name)));
   }
   std::seed_seq seeds = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),

@@ -53,7 +53,11 @@ nb::object PosteriorOf(const GivenTwin& given) {
 }
 
 std::vector<GivenTwin> SamplesOf(const GivenTwin& given, int count, std::uint64_t seed) {
-  if (count < 0) throw Error(fmt::format("n is {}, expected 0 or more", count));
+  constexpr int kMost = 10000;
+  if (count < 0 || count > kMost) {
+    throw Error(fmt::format("n is {}, expected 0 to {}", count, kMost));
+  }
+  if (count == 0) return {};
   const Twin& twin = Checked(given);
   std::vector<GivenTwin> samples;
   for (int i = 0; i < count; ++i) {
@@ -211,7 +215,7 @@ void BindTwin(nb::module_& module) {
       "(name, hash) of each recording.");
   twin.def_prop_ro(
       "posterior", &PosteriorOf,
-      "What the recordings leave open of level 0, a dict of arrays, or None. Each row is a\n"
+      "What the recordings leave open of level 0, a dict of copies, or None. Each row is a\n"
       "direction by one standard deviation: `stiffness` and `loss_time` (directions, springs),\n"
       "`drag` (directions,) and `contact` (directions, coefficients) are changes of logarithms,\n"
       "`effects` (directions, values of effects) of values.",

@@ -64,18 +64,39 @@ TEST(Folder, ReplacesFoldersOfSamples) {
   const std::string path = folder.File("b");
   EXPECT_EQ(SampleFolder(7), "sample_0007");
   WriteFolder(path,
-              {{"x", "a"}, {"sample_0000/x", "b"}, {"sample_0000/y", "c"}, {"sample_0001/x", "d"}},
+              {{"README.md", "a"},
+               {"sample_0000/level0.xml", "b"},
+               {"sample_0000/level1.xml", "c"},
+               {"sample_0001/scene.xml", "d"}},
               false);
-  EXPECT_EQ(ReadFile(path + "/sample_0000/y"), "c");
-  WriteFolder(path, {{"x", "e"}, {"sample_0000/x", "f"}}, true);
-  EXPECT_EQ(ReadFile(path + "/sample_0000/x"), "f");
-  EXPECT_FALSE(std::filesystem::exists(path + "/sample_0000/y"));
+  EXPECT_EQ(ReadFile(path + "/sample_0000/level1.xml"), "c");
+  WriteFolder(path, {{"README.md", "e"}, {"sample_0000/level0.xml", "f"}}, true);
+  EXPECT_EQ(ReadFile(path + "/sample_0000/level0.xml"), "f");
+  EXPECT_FALSE(std::filesystem::exists(path + "/sample_0000/level1.xml"));
   EXPECT_FALSE(std::filesystem::exists(path + "/sample_0001"));
   std::filesystem::create_directory(path + "/z");  // no file can take its place: all stays
-  EXPECT_NE(MessageOf(path, {{"sample_0000/x", "g"}, {"sample_0001/x", "h"}, {"z", "i"}}, true),
-            "");
-  EXPECT_EQ(ReadFile(path + "/sample_0000/x"), "f");
+  const std::map<std::string, std::string> files = {
+      {"sample_0000/level0.xml", "g"}, {"sample_0001/level0.xml", "h"}, {"z", "i"}};
+  EXPECT_NE(MessageOf(path, files, true), "");
+  EXPECT_EQ(ReadFile(path + "/sample_0000/level0.xml"), "f");
   EXPECT_FALSE(std::filesystem::exists(path + "/sample_0001"));
+  EXPECT_EQ(folder.count(), 1);
+}
+
+TEST(Folder, LeavesAloneWhatNoExportMade) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("b"), notes = path + "/sample_0003/notes.txt";
+  WriteFolder(path, {{"README.md", "a"}, {"sample_0003/level0.xml", "b"}}, false);
+  std::ofstream(notes) << "mine";
+  WriteFolder(path, {{"README.md", "c"}}, true);
+  EXPECT_EQ(ReadFile(notes), "mine");
+  EXPECT_EQ(MessageOf(path, {{"README.md", "d"}, {"sample_0003/level0.xml", "e"}}, true),
+            path + "/sample_0003: is in the way of a sample, and no export made it");
+  EXPECT_EQ(ReadFile(path + "/README.md"), "c");
+  EXPECT_EQ(ReadFile(path + "/sample_0003/level0.xml"), "b");
+  std::ofstream(path + "/sample_0004") << "mine";
+  EXPECT_NE(MessageOf(path, {{"sample_0004/level0.xml", "e"}}, true), "");
+  EXPECT_EQ(ReadFile(path + "/sample_0004"), "mine");
   EXPECT_EQ(folder.count(), 1);
 }
 

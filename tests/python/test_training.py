@@ -140,5 +140,5 @@ def test_samples_come_from_the_posterior(twin):
     assert samples[0].posterior is None
     with pytest.raises(physpring.Error, match='no posterior'):
         samples[0].sample(1)
-    with pytest.raises(physpring.Error, match='expected 0 or more'):
+    with pytest.raises(physpring.Error, match='expected 0 to'):
         twin.sample(-1)
