@@ -198,6 +198,12 @@ void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
       ->type_name("POLICY")
       ->capture_default_str();
   command
+      ->add_option("--policy-adapter", sweep.policy.adapter,
+                   "how a policy server names and arranges what it is asked with and what it "
+                   "answers; default: the task's, or plain")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  command
       ->add_option("--patience", sweep.policy.patience.answer,
                    "longest that a policy server may take for an answer")
       ->check(NumberBetween(0.001, 1e6))

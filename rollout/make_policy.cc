@@ -23,6 +23,11 @@ bool IsPolicy(const std::string& text) {
          (text.starts_with(kReplay) && text.size() > kReplay.size()) || text.starts_with(kServer);
 }
 
+std::string AdapterOf(const Task& task, const PolicyChoice& choice) {
+  if (!choice.text.starts_with(kServer)) return "";
+  return choice.adapter.empty() ? task.policy_adapter : choice.adapter;
+}
+
 std::unique_ptr<Policy> MakePolicy(const Task& task, const PolicyChoice& choice, int level,
                                    int episode) {
   const std::string& text = choice.text;
@@ -33,7 +38,11 @@ std::unique_ptr<Policy> MakePolicy(const Task& task, const PolicyChoice& choice,
     const bool folder = std::filesystem::is_directory(path);
     return MakeReplayPolicy(task, folder ? EpisodePath(path, level, episode) + ".npz" : path);
   }
-  if (text.starts_with(kServer)) return MakeWebsocketPolicy(task, text, choice.patience);
+  if (text.starts_with(kServer)) {
+    const std::string file = AdapterOf(task, choice);
+    const PolicyAdapter adapter = file.empty() ? PlainAdapter(task) : ReadPolicyAdapter(file, task);
+    return MakeWebsocketPolicy(task, adapter, text, choice.patience);
+  }
   throw Error("policy " + Quote(text) +
               ": expected scripted, random, replay:FILE or ws://HOST:PORT");
 }

@@ -12,6 +12,7 @@ namespace physpring {
 
 struct PolicyChoice {
   std::string text = "scripted";  // or random, replay:PATH, ws://HOST:PORT
+  std::string adapter;            // file for ws://; empty: the task's
   ServerPatience patience;
 };
 
@@ -19,6 +20,9 @@ struct PolicyChoice {
 // replayed in its own number. Throws Error unless there is such a policy for the task.
 std::unique_ptr<Policy> MakePolicy(const Task& task, const PolicyChoice& choice, int level,
                                    int episode);
+
+// The adapter's file that a policy server is spoken to by, or empty for the plain way.
+std::string AdapterOf(const Task& task, const PolicyChoice& choice);
 
 // Whether `text` has one of these forms.
 bool IsPolicy(const std::string& text);

@@ -24,8 +24,12 @@ struct Observation {
   // Cartesian: the hand's x y z qw qx qy qz [m] and the gripper as commanded, 0 open to 1 closed.
   // Joints: the actuated joints' positions.
   Eigen::VectorXd robot;
-  Points particles;                     // 3 x level-0 particles in the world, m, lifted
-  std::map<std::string, Image> images;  // by camera; only for policies that need them
+  Pose hand;               // of the robot's hand, where the task names one
+  Eigen::VectorXd joints;  // as measured: the driven joints but the gripper's (joints)
+  double gripper = 0;      // as measured, 0 open to 1 closed
+  std::map<std::string, Eigen::VectorXd> sensors;  // of the last step, by the task's names
+  Points particles;                                // 3 x level-0 particles in the world, m, lifted
+  std::map<std::string, Image> images;             // by camera; only for policies that need them
 };
 
 // One policy drives one episode at a time, in one thread.

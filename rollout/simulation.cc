@@ -132,12 +132,45 @@ Eigen::VectorXd Simulation::Robot() const {
     }
     return joints;
   }
-  double quaternion[4];
-  mju_mat2Quat(quaternion, data_->site_xmat + 9 * model_.hand);
-  Eigen::VectorXd robot(8);
-  robot << Eigen::Map<const Eigen::Vector3d>(data_->site_xpos + 3 * model_.hand),
-      Eigen::Map<const Eigen::Vector4d>(quaternion), command_.gripper;
-  return robot;
+  return CartesianAction(Hand(), command_.gripper);
+}
+
+Pose Simulation::Hand() const {
+  if (model_.hand < 0) return {};
+  double q[4];
+  mju_mat2Quat(q, data_->site_xmat + 9 * model_.hand);
+  return {Eigen::Map<const Eigen::Vector3d>(data_->site_xpos + 3 * model_.hand),
+          Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+}
+
+Eigen::VectorXd Simulation::Joints() const {
+  if (model_.task->robot.kind != RobotKind::kJoints) return {};
+  const Eigen::VectorXd all = Robot();
+  return all.head(all.size() - model_.task->robot.fingers);
+}
+
+double Simulation::Gripper() const {
+  const RobotOptions& robot = model_.task->robot;
+  if (robot.fingers == 0) return 0;
+  double closed = 0;
+  for (int i = 0; i < robot.fingers; ++i) {
+    const std::size_t actuator = model_.actuators.size() - robot.fingers + i;
+    const int place = model_.joint_qpos[actuator];
+    const double at = place >= 0 ? data_->qpos[place] : data_->ctrl[model_.actuators[actuator]];
+    closed += (at - robot.open[i]) / (robot.closed[i] - robot.open[i]) / robot.fingers;
+  }
+  return std::clamp(closed, 0.0, 1.0);
+}
+
+std::map<std::string, Eigen::VectorXd> Simulation::Sensors() const {
+  const mjModel& model = *model_.model;
+  std::map<std::string, Eigen::VectorXd> sensors;
+  for (std::size_t i = 0; i < model_.sensors.size(); ++i) {
+    const int sensor = model_.sensors[i];
+    sensors[model_.task->sensors[i]] = Eigen::Map<const Eigen::VectorXd>(
+        data_->sensordata + model.sensor_adr[sensor], model.sensor_dim[sensor]);
+  }
+  return sensors;
 }
 
 SuccessRule::Verdict Simulation::Judge(const Points& particles) const {

@@ -26,7 +26,11 @@ class Simulation {
   // The present state.
   Points Nodes() const;           // 3 x nodes of the level, m
   Points Particles() const;       // 3 x level-0 particles, m, lifted
-  Eigen::VectorXd Robot() const;  // see Observation::robot
+  Eigen::VectorXd Robot() const;  // see Observation, as what follows
+  Pose Hand() const;
+  Eigen::VectorXd Joints() const;
+  double Gripper() const;
+  std::map<std::string, Eigen::VectorXd> Sensors() const;
   SuccessRule::Verdict Judge(const Points& particles) const;
   const mjData& data() const { return *data_; }
 

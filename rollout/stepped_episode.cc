@@ -53,6 +53,10 @@ void SteppedEpisode::Observe(int frame) {
   const Stopwatch watch(&result_.seconds.scoring);
   observation_.frame = frame;
   observation_.robot = simulation_.Robot();
+  observation_.hand = simulation_.Hand();
+  observation_.joints = simulation_.Joints();
+  observation_.gripper = simulation_.Gripper();
+  observation_.sensors = simulation_.Sensors();
   observation_.particles = simulation_.Particles();
   result_.episode.robot.push_back(observation_.robot);
   result_.episode.nodes.push_back(simulation_.Nodes());

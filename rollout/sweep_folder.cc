@@ -23,12 +23,14 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string FormatIdentity(const Task& task, const SweepOptions& options) {
-  const nlohmann::ordered_json json = {{"task", task.name},
-                                       {"task_hash", HashFile(task.folder + "/task.json")},
-                                       {"policy", options.policy.text},
-                                       {"seed", options.seed},
-                                       {"action_noise", options.disturbance.action},
-                                       {"perturb", options.disturbance.start}};
+  nlohmann::ordered_json json = {{"task", task.name},
+                                 {"task_hash", HashFile(task.folder + "/task.json")},
+                                 {"policy", options.policy.text},
+                                 {"seed", options.seed},
+                                 {"action_noise", options.disturbance.action},
+                                 {"perturb", options.disturbance.start}};
+  const std::string adapter = AdapterOf(task, options.policy);
+  if (!adapter.empty()) json["policy_adapter_hash"] = HashFile(adapter);
   return json.dump(1) + "\n";
 }
 
@@ -93,7 +95,8 @@ void OpenSweepFolder(const Task& task, const SweepOptions& options,
   }
   if (IsNewOrHolds(file, identity)) return;
   const JsonFields now(identity, file), before = ReadJsonFile(file);
-  for (const char* key : {"task", "task_hash", "policy", "seed", "action_noise", "perturb"}) {
+  for (const char* key :
+       {"task", "task_hash", "policy", "seed", "action_noise", "perturb", "policy_adapter_hash"}) {
     const auto value = [key](const JsonFields& fields) {
       return fields.json().value(key, nlohmann::ordered_json());
     };

@@ -49,16 +49,23 @@ Eigen::VectorXd Controls(const JsonFields& fields, const std::string& key) {
                                            static_cast<Eigen::Index>(numbers.size()));
 }
 
+void ReadFingers(const JsonFields& fields, RobotOptions* robot) {
+  if (robot->fingers == 0) return;
+  robot->open = Controls(fields, "open");
+  robot->closed = Controls(fields, "closed");
+  if (robot->open.size() != robot->fingers) fields.Fail("open", "must have one number a finger");
+  if (robot->closed.size() != robot->fingers) {
+    fields.Fail("closed", "must have one number a finger");
+  }
+  for (int i = 0; i < robot->fingers; ++i) {
+    if (robot->open[i] == robot->closed[i]) fields.Fail("closed", "must differ from open");
+  }
+}
+
 void ReadCartesian(const JsonFields& fields, RobotOptions* robot) {
   robot->target = fields.Text("target");
   robot->hand = fields.Text("hand");
-  const auto fingers = static_cast<Eigen::Index>(robot->actuators.size());
-  if (fingers > 0) {
-    robot->open = Controls(fields, "open");
-    robot->closed = Controls(fields, "closed");
-    if (robot->open.size() != fingers) fields.Fail("open", "must have one number an actuator");
-    if (robot->closed.size() != fingers) fields.Fail("closed", "must have one number an actuator");
-  }
+  robot->fingers = static_cast<int>(robot->actuators.size());
   robot->speed = PositiveNumberOr(fields, "speed", robot->speed, kMostSpeed);
   robot->turn_speed = Radians(PositiveNumberOr(fields, "turn_speed", 180, kMostTurns));
   robot->gripper_speed =
@@ -67,7 +74,7 @@ void ReadCartesian(const JsonFields& fields, RobotOptions* robot) {
 
 RobotOptions ReadRobot(const JsonFields& fields) {
   fields.ExpectOnly({"kind", "target", "hand", "actuators", "open", "closed", "home", "speed",
-                     "turn_speed", "gripper_speed"});
+                     "turn_speed", "gripper_speed", "fingers"});
   RobotOptions robot;
   const std::string kind = TextOr(fields, "kind", "cartesian");
   if (kind != "cartesian" && kind != "joints") fields.Fail("kind", "must be cartesian or joints");
@@ -77,7 +84,11 @@ RobotOptions ReadRobot(const JsonFields& fields) {
   } else {
     robot.kind = RobotKind::kJoints;
     if (robot.actuators.empty()) fields.Fail("kind", "is joints, but there are no actuators");
+    robot.hand = TextOr(fields, "hand", "");
+    const int count = static_cast<int>(robot.actuators.size());
+    if (fields.Has("fingers")) robot.fingers = CountBetween(fields, "fingers", 0, count);
   }
+  ReadFingers(fields, &robot);
   if (fields.Has("home")) robot.home = Controls(fields, "home");
   if (robot.home.size() > 0 && robot.home.size() != robot.action_size()) {
     fields.Fail("home", fmt::format("must have {} numbers", robot.action_size()));
@@ -174,7 +185,8 @@ Task ReadTask(const std::string& folder) {
   const std::string file = InFolder(folder, "task.json");
   const JsonFields fields = ReadJsonFile(file);
   fields.ExpectOnly({"prompt", "scene", "twin", "levels", "object", "rate", "settle", "frames",
-                     "robot", "starts", "success", "policy", "cameras", "image"});
+                     "robot", "starts", "success", "policy", "policy_adapter", "sensors", "cameras",
+                     "image"});
   Task task;
   task.folder = folder;
   task.name = NameOfFolder(folder);
@@ -189,6 +201,10 @@ Task ReadTask(const std::string& folder) {
   if (fields.Has("starts")) task.starts = ReadStarts(fields.Object("starts"), file);
   task.success = ReadSuccess(fields.Object("success"), task.frames);
   task.policy = TextOr(fields, "policy", "");
+  if (fields.Has("policy_adapter")) {
+    task.policy_adapter = FileOf(fields, "policy_adapter", folder, fields.Text("policy_adapter"));
+  }
+  if (fields.Has("sensors")) task.sensors = fields.Texts("sensors");
   ReadCameras(fields, &task);
   return task;
 }

@@ -24,10 +24,11 @@ enum class RobotKind {
 struct RobotOptions {
   RobotKind kind = RobotKind::kCartesian;
   std::string target;  // mocap body that the hand is welded to (kCartesian)
-  std::string hand;    // site whose pose is the robot's state
+  std::string hand;    // site whose pose is the robot's state; may be missing with kJoints
   std::vector<std::string>
-      actuators;                 // the fingers' (kCartesian), or all that are driven (kJoints)
-  Eigen::VectorXd open, closed;  // (actuators), ctrl at gripper 0 and 1 (kCartesian)
+      actuators;    // the fingers' (kCartesian), or all that are driven (kJoints)
+  int fingers = 0;  // so many of the last actuators are the gripper's; all of them with kCartesian
+  Eigen::VectorXd open, closed;  // (fingers), ctrl at gripper 0 and 1
   Eigen::VectorXd home;          // the action while the scene settles; empty: as the scene is
   double speed = 0.5;            // m/s, at most, of the target (kCartesian)
   double turn_speed = 3;         // rad/s, at most, of the target (kCartesian)
@@ -68,6 +69,8 @@ struct Task {
   StartOptions starts;
   SuccessOptions success;
   std::string policy;                // the scripted policy, see policies/registry.h
+  std::string policy_adapter;        // file, for policy servers; empty: plain
+  std::vector<std::string> sensors;  // names in the scene, for policies that ask for them
   std::vector<std::string> cameras;  // names in the scene; the first one makes the video
   int width = 640, height = 480;     // pixels, of what cameras see
 };

@@ -100,16 +100,17 @@ void FindRobot(const std::string& where, TaskModel* made) {
       throw Error(
           fmt::format("{}: robot.target {} is not a mocap body", where, Quote(robot.target)));
     }
-    made->hand = Find(model, mjOBJ_SITE, robot.hand, where);
   }
+  if (!robot.hand.empty()) made->hand = Find(model, mjOBJ_SITE, robot.hand, where);
   for (const std::string& name : robot.actuators) {
     const int actuator = Find(model, mjOBJ_ACTUATOR, name, where);
     made->actuators.push_back(actuator);
-    if (robot.kind == RobotKind::kCartesian) continue;
-    if (model.actuator_trntype[actuator] != mjTRN_JOINT) {
+    const bool drives_joint = model.actuator_trntype[actuator] == mjTRN_JOINT;
+    if (robot.kind == RobotKind::kJoints && !drives_joint) {
       throw Error(fmt::format("{}: actuator {} does not drive a joint", where, Quote(name)));
     }
-    made->joint_qpos.push_back(model.jnt_qposadr[model.actuator_trnid[2 * actuator]]);
+    const int joint = model.actuator_trnid[2 * actuator];
+    made->joint_qpos.push_back(drives_joint ? model.jnt_qposadr[joint] : -1);
   }
 }
 
@@ -143,6 +144,9 @@ TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* w
   FindRobot(where, &made);
   if (!task.success.body.empty()) {
     made.success_body = Find(*made.model, mjOBJ_BODY, task.success.body, where);
+  }
+  for (const std::string& sensor : task.sensors) {
+    made.sensors.push_back(Find(*made.model, mjOBJ_SENSOR, sensor, where));
   }
   for (const std::string& camera : task.cameras) Find(*made.model, mjOBJ_CAMERA, camera, where);
   made.success = MakeSuccessRule(task);

@@ -27,7 +27,8 @@ struct TaskModel {
   int target = -1;  // row of mocap_pos
   int hand = -1;
   std::vector<int> actuators;
-  std::vector<int> joint_qpos;  // where the actuators' joints are in qpos (RobotKind::kJoints)
+  std::vector<int> joint_qpos;  // where the actuators' joints are in qpos; -1: drives no joint
+  std::vector<int> sensors;     // of Task::sensors
 
   int success_body = 0;
   std::unique_ptr<const SuccessRule> success;

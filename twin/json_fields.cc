@@ -101,6 +101,10 @@ std::vector<JsonFields> JsonFields::Objects(const std::string& key) const {
   return objects;
 }
 
+JsonFields JsonFields::With(const std::string& key, Json object) const {
+  return {std::move(object), where_, parent_ + key + "."};
+}
+
 void JsonFields::ExpectOnly(std::initializer_list<std::string_view> keys) const {
   for (const auto& [key, value] : object_.items()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;

@@ -30,6 +30,8 @@ class JsonFields {
   std::vector<std::vector<int>> WholeNumberLists(const std::string& key) const;  // [[0, 1], ...]
   JsonFields Object(const std::string& key) const;
   std::vector<JsonFields> Objects(const std::string& key) const;  // an array of objects
+  // `object` as if it stood under `key`: for what may be written shorter than as an object.
+  JsonFields With(const std::string& key, nlohmann::ordered_json object) const;
 
   // Throws Error if there is a key that is not in `keys`.
   void ExpectOnly(std::initializer_list<std::string_view> keys) const;

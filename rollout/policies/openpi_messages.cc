@@ -7,6 +7,7 @@
 #include <msgpack.hpp>
 #include <vector>
 
+#include "rollout/picture_size.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -32,6 +33,51 @@ void PackArray(const void* data, std::size_t bytes, const char* type, const std:
   packer->pack(std::string(type));
   PackKey("shape", packer);
   packer->pack(shape);
+}
+
+void PackImage(const ImageField& field, const Image& seen, Packer* packer) {
+  Image image = field.mirror ? Mirror(seen) : seen;
+  if (field.width > 0) image = ResizeWithPad(image, field.width, field.height);
+  if (!field.colours_first) {
+    PackArray(image.rgb.data(), image.rgb.size(), "|u1", {image.height, image.width, 3}, packer);
+    return;
+  }
+  const std::size_t pixels = image.rgb.size() / 3;
+  std::vector<unsigned char> planes(image.rgb.size());
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t colour = 0; colour < 3; ++colour) {
+      planes[colour * pixels + i] = image.rgb[3 * i + colour];
+    }
+  }
+  PackArray(planes.data(), planes.size(), "|u1", {3, image.height, image.width}, packer);
+}
+
+// What a request is made of.
+struct Asked {
+  const PolicyFrames& frames;
+  const Observation& observation;
+  const std::string& prompt;
+};
+
+void PackFields(const std::vector<RequestField>& fields, const Asked& asked, Packer* packer) {
+  packer->pack_map(static_cast<std::uint32_t>(fields.size()));
+  for (const RequestField& field : fields) {
+    packer->pack(field.key);
+    if (field.is_prompt) {
+      packer->pack(asked.prompt);
+    } else if (field.image) {
+      PackImage(*field.image, asked.observation.images.at(field.image->camera), packer);
+    } else if (!field.state.empty()) {
+      std::vector<double> state;
+      for (const StatePart& part : field.state) {
+        AddState(part, asked.observation, asked.frames, &state);
+      }
+      PackArray(state.data(), sizeof(double) * state.size(), "<f8",
+                {static_cast<int>(state.size())}, packer);
+    } else {
+      PackFields(field.fields, asked, packer);
+    }
+  }
 }
 
 // Counts what a message holds before anything is made of it: an object takes 24 bytes, and the
@@ -125,22 +171,11 @@ std::vector<std::uint64_t> Shape(const msgpack::object& object) {
 
 }  // namespace
 
-std::string EncodeObservation(const Observation& observation, const std::string& prompt) {
+std::string EncodeObservation(const PolicyAdapter& adapter, const Observation& observation,
+                              const std::string& prompt) {
   msgpack::sbuffer buffer;
   Packer packer(buffer);
-  packer.pack_map(3);
-  packer.pack(std::string("images"));
-  packer.pack_map(static_cast<std::uint32_t>(observation.images.size()));
-  for (const auto& [camera, image] : observation.images) {
-    packer.pack(camera);
-    PackArray(image.rgb.data(), image.rgb.size(), "|u1", {image.height, image.width, 3}, &packer);
-  }
-  packer.pack(std::string("state"));
-  const Eigen::VectorXd& state = observation.robot;
-  PackArray(state.data(), sizeof(double) * static_cast<std::size_t>(state.size()), "<f8",
-            {static_cast<int>(state.size())}, &packer);
-  packer.pack(std::string("prompt"));
-  packer.pack(prompt);
+  PackFields(adapter.request, {adapter.frames, observation, prompt}, &packer);
   return {buffer.data(), buffer.size()};
 }
 

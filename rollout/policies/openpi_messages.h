@@ -8,12 +8,14 @@
 #include <string>
 #include <string_view>
 
-#include "rollout/policy.h"
+#include "rollout/policies/policy_adapter.h"
 
 namespace physpring {
 
-// A request: {"images": {camera: height x width x 3 of uint8}, "state": float64, "prompt": text}.
-std::string EncodeObservation(const Observation& observation, const std::string& prompt);
+// A request with the fields of the adapter: pictures as uint8, states as float64, the prompt as
+// text.
+std::string EncodeObservation(const PolicyAdapter& adapter, const Observation& observation,
+                              const std::string& prompt);
 
 // The chunk of actions of an answer, {"actions": (frames, numbers) of a float type, ...}, as
 // numbers x frames. Throws PolicyError unless it is that, with `numbers` numbers.

@@ -199,46 +199,63 @@ class Connection {
 
 class WebsocketPolicy : public Policy {
  public:
-  WebsocketPolicy(const Task& task, const Address& address, const ServerPatience& patience)
+  WebsocketPolicy(const Task& task, PolicyAdapter adapter, const Address& address,
+                  const ServerPatience& patience)
       : address_(address),
         patience_(patience),
         prompt_(task.prompt),
-        numbers_(task.robot.action_size()) {}
+        robot_(task.robot),
+        seconds_(adapter.frames_per_action / task.rate),
+        adapter_(std::move(adapter)),
+        chunks_(adapter_.chunks) {}
 
-  bool NeedsImages() const override { return next_ == actions_.cols(); }
+  bool NeedsImages() const override {
+    return adapter_.NeedsImages() && held_ == 0 && chunks_.empty();
+  }
 
   void Reset(std::uint64_t) override {
-    next_ = 0;
-    actions_.resize(numbers_, 0);
+    held_ = 0;
+    chunks_.Reset();
+    command_.resize(0);
     connection_ = std::make_unique<Connection>(address_, patience_);
     CheckMetadata(connection_->Receive());
   }
 
   Eigen::VectorXd Act(const Observation& observation) override {
-    if (next_ == actions_.cols()) {
-      connection_->Send(EncodeObservation(observation, prompt_));
-      actions_ = DecodeActions(connection_->Receive(), numbers_);
-      connection_->HasAnswered();
-      next_ = 0;
+    if (command_.size() == 0) command_ = observation.robot;
+    if (held_ == 0) {
+      if (chunks_.empty()) {
+        connection_->Send(EncodeObservation(adapter_, observation, prompt_));
+        chunks_.Add(DecodeActions(connection_->Receive(), SizeOf(adapter_.action, robot_)));
+        connection_->HasAnswered();
+      }
+      command_ = ToAction(adapter_.action, chunks_.Next(),
+                          {robot_, adapter_.frames, observation, command_, seconds_});
+      held_ = adapter_.frames_per_action;
     }
-    return actions_.col(next_++);
+    --held_;
+    return command_;
   }
 
  private:
   Address address_;
   ServerPatience patience_;
   std::string prompt_;
-  int numbers_;
-  Eigen::MatrixXd actions_;  // numbers x frames
-  Eigen::Index next_ = 0;
+  RobotOptions robot_;
+  double seconds_;  // that an action lasts
+  PolicyAdapter adapter_;
+  ActionChunks chunks_;
+  int held_ = 0;             // frames for which the last action still holds
+  Eigen::VectorXd command_;  // the last action
   std::unique_ptr<Connection> connection_;
 };
 
 }  // namespace
 
-std::unique_ptr<Policy> MakeWebsocketPolicy(const Task& task, const std::string& address,
+std::unique_ptr<Policy> MakeWebsocketPolicy(const Task& task, const PolicyAdapter& adapter,
+                                            const std::string& address,
                                             const ServerPatience& patience) {
-  return std::make_unique<WebsocketPolicy>(task, ParseAddress(address), patience);
+  return std::make_unique<WebsocketPolicy>(task, adapter, ParseAddress(address), patience);
 }
 
 }  // namespace physpring

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "rollout/policies/policy_adapter.h"
 #include "rollout/policy.h"
 
 namespace physpring {
@@ -14,7 +15,8 @@ namespace physpring {
 // whenever the last one is used up. What the server's actions lack is a PolicyError. A server that
 // is not there, is gone, takes too long or tells of an error of its own is a PolicyServerError.
 // Throws Error for an address of another form.
-std::unique_ptr<Policy> MakeWebsocketPolicy(const Task& task, const std::string& address,
+std::unique_ptr<Policy> MakeWebsocketPolicy(const Task& task, const PolicyAdapter& adapter,
+                                            const std::string& address,
                                             const ServerPatience& patience);
 
 }  // namespace physpring
