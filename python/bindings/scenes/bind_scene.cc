@@ -7,6 +7,7 @@
 #include "python/bindings/scenes/scenes.h"
 #include "python/bindings/scenes/task_scene.h"
 #include "python/bindings/watched_work.h"
+#include "rollout/picture_size.h"
 #include "trainer/solvers/parallel.h"
 #include "twin/error.h"
 
@@ -172,6 +173,16 @@ void BindScene(nb::module_& module) {
     return nb::make_tuple(start.episode, CopyOf(Eigen::VectorXd(start.object.position)),
                           CopyOf(Eigen::VectorXd(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()))));
   });
+  module.def(
+      "resize_with_pad",
+      [](const nb::ndarray<const unsigned char, nb::ndim<3>, nb::c_contig, nb::device::cpu>& pixels,
+         int width, int height) {
+        if (pixels.shape(2) != 3 || pixels.size() == 0) throw Error("pixels has not 3 colours");
+        Image image{static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)), {}};
+        image.rgb.assign(pixels.data(), pixels.data() + pixels.size());
+        return PixelsOf(ResizeWithPad(image, width, height));
+      },
+      nb::arg("pixels"), nb::arg("width"), nb::arg("height"));
   module.def("step_all", &StepAll, nb::arg("scenes"), nb::arg("actions"), nb::arg("threads"));
   module.def("reset_all", &ResetAll, nb::arg("scenes"), nb::arg("seeds"), nb::arg("episodes"),
              nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"));
