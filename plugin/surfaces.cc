@@ -28,6 +28,13 @@ Eigen::Matrix3d Cross(const Vector& r) {
   return cross;
 }
 
+// A force (N) or impulse (N s) at the end of an arm, with its moment: first the angular part.
+Eigen::Matrix<double, 6, 1> Wrench(const Vector& arm, const Vector& force) {
+  Eigen::Matrix<double, 6, 1> wrench;
+  wrench << arm.cross(force), force;
+  return wrench;
+}
+
 // The instance of another twin that `body` is a node of; -1 = none.
 int InstanceOfNode(const mjModel* model, int body) {
   const int instance = model->body_plugin[model->body_parentid[model->body_weldid[body]]];
@@ -59,11 +66,12 @@ void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<doub
   LetHeavyBodiesGoOn();
   // as in twin/contact.h: the ground before the geoms that move
   std::stable_partition(touches_.begin(), touches_.end(),
-                        [](const Touch& touch) { return touch.body < 0; });
+                        [&](const Touch& touch) { return !bodies_[touch.body].moves; });
 }
 
 void Surfaces::LetHeavyBodiesGoOn() {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (!bodies_[b].moves) continue;
     double nodes = 0;  // kg
     for (const Touch& touch : touches_) {
       if (touch.body == static_cast<int>(b)) nodes += level_->system.mass[touch.node];
@@ -105,65 +113,78 @@ void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStat
     const double friction = std::min(model->geom_friction[3 * other_geom], kMostFriction);
     law = {.friction = friction, .cone = law.cone};
   }
-  touches_.push_back(
-      {node, FindBody(model, data, other_body), law, normal, X(state[node]), gap, 0});
+  touches_.push_back({node, FindBody(model, data, other_body), law, normal, X(state[node]), gap, 0,
+                      Vector6::Zero()});
 }
 
 int Surfaces::FindBody(const mjModel* model, mjData* data, int body) {
-  const int root = model->body_weldid[body];
-  if (root == 0 || model->body_mocapid[root] >= 0) return -1;
   const auto known = std::find_if(bodies_.begin(), bodies_.end(),
                                   [&](const Body& other) { return other.id == body; });
   if (known != bodies_.end()) return static_cast<int>(known - bodies_.begin());
 
-  Body found{body, Eigen::Map<const Vector>(data->xipos + 3 * body), {}, Vector6::Zero(), {}};
-  mj_objectVelocity(model, data, mjOBJ_BODY, body, found.velocity.data(), 0);
-  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
-  const int nv = model->nv;
-  jacobian_.resize(6 * static_cast<std::size_t>(nv));
-  solution_.resize(jacobian_.size());
-  mj_jacBodyCom(model, data, jacobian_.data() + 3 * nv, jacobian_.data(), body);
-  mj_solveM(model, data, solution_.data(), jacobian_.data(), 6);
-  found.inverse_inertia = Eigen::Map<const Rows>(jacobian_.data(), 6, nv) *
-                          Eigen::Map<const Rows>(solution_.data(), 6, nv).transpose();
+  const int root = model->body_weldid[body];
+  Body found{body,
+             root != 0 && model->body_mocapid[root] < 0,
+             Eigen::Map<const Vector>(data->xipos + 3 * body),
+             Vector6::Zero(),
+             Vector6::Zero(),
+             Eigen::Matrix<double, 6, 6>::Zero()};
+  if (found.moves) ReadMotion(model, data, &found);
   bodies_.push_back(found);
   return static_cast<int>(bodies_.size()) - 1;
 }
 
-Vector Surfaces::Hit(const Touch& touch, const Vector& x, const Vector& v, double h) {
-  Body* body = touch.body < 0 ? nullptr : &bodies_[touch.body];
+void Surfaces::ReadMotion(const mjModel* model, mjData* data, Body* body) {
+  mj_objectVelocity(model, data, mjOBJ_BODY, body->id, body->velocity.data(), 0);
+  using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
+  const int nv = model->nv;
+  jacobian_.resize(6 * static_cast<std::size_t>(nv));
+  solution_.resize(jacobian_.size());
+  mj_jacBodyCom(model, data, jacobian_.data() + 3 * nv, jacobian_.data(), body->id);
+  mj_solveM(model, data, solution_.data(), jacobian_.data(), 6);
+  body->inverse_inertia = Eigen::Map<const Rows>(jacobian_.data(), 6, nv) *
+                          Eigen::Map<const Rows>(solution_.data(), 6, nv).transpose();
+}
+
+Vector Surfaces::Hit(const Vector& x, const Vector& v, double h, Touch* touch) {
+  Body& body = bodies_[touch->body];
+  const Vector arm = x - body.centre;
   Eigen::Matrix<double, 3, 6> at_node;  // velocity of the surface from that of the body
   Vector surface = Vector::Zero();
-  if (body != nullptr) {
-    at_node << -Cross(x - body->centre), Eigen::Matrix3d::Identity();
-    surface = at_node * body->velocity;
+  const double gap = touch->gap + touch->normal.dot(x - touch->start) - touch->advanced;
+  if (body.moves) {
+    at_node << -Cross(arm), Eigen::Matrix3d::Identity();
+    surface = at_node * body.velocity;
+    // a body that overlaps the node pushes it out
+    surface += recovery_rate_ * std::max(-gap, 0.0) * touch->normal;
   }
-  const double gap = touch.gap + touch.normal.dot(x - touch.start) - touch.advanced;
-  // a body that overlaps the node pushes it out
-  if (body != nullptr) surface += recovery_rate_ * std::max(-gap, 0.0) * touch.normal;
   const Vector u = v - surface;
-  const double approach = touch.normal.dot(u);
+  const double approach = touch->normal.dot(u);
   if (gap + h * approach >= 0 || approach >= -kApproach) return v;
-  Vector after = Impact(u, touch.normal, touch.law);
-  if (body == nullptr) return after;
-  const double mass = level_->system.mass[touch.node];
+  Vector after = Impact(u, touch->normal, touch->law);
+  const double mass = level_->system.mass[touch->node];
+  if (!body.moves) {
+    touch->impulse += Wrench(arm, mass * (v - after));
+    return after;
+  }
   const Eigen::Matrix3d inverse_mass =
-      Eigen::Matrix3d::Identity() / mass + at_node * body->inverse_inertia * at_node.transpose();
+      Eigen::Matrix3d::Identity() / mass + at_node * body.inverse_inertia * at_node.transpose();
   const Vector impulse = inverse_mass.inverse() * (after - u);
-  const Vector6 reaction = -at_node.transpose() * impulse;
-  body->velocity += body->inverse_inertia * reaction;
-  body->impulse += reaction;
+  const Vector6 reaction = Wrench(arm, -impulse);
+  touch->impulse += reaction;
+  body.velocity += body.inverse_inertia * reaction;
+  body.impulse += reaction;
   return v + impulse / mass;
 }
 
 void Surfaces::Apply(const NodeStates<double>& state, double h, NodeStates<double>* next) {
-  for (const Touch& touch : touches_) {
+  for (Touch& touch : touches_) {
     Eigen::Map<Vector> v((*next)[touch.node].v);
-    v = Hit(touch, X(state[touch.node]), v, h);
+    v = Hit(X(state[touch.node]), v, h, &touch);
   }
   for (Touch& touch : touches_) {
-    if (touch.body < 0) continue;
     const Body& body = bodies_[touch.body];
+    if (!body.moves) continue;
     const Vector arm = X(state[touch.node]) - body.centre;
     const Vector surface = body.velocity.tail<3>() + body.velocity.head<3>().cross(arm);
     touch.advanced += h * touch.normal.dot(surface);
@@ -173,6 +194,7 @@ void Surfaces::Apply(const NodeStates<double>& state, double h, NodeStates<doubl
 
 void Surfaces::AddReactions(const mjModel* model, mjData* data, double time) const {
   for (const Body& body : bodies_) {
+    if (!body.moves) continue;
     const Vector6 mean = body.impulse / time;
     mj_applyFT(model, data, mean.data() + 3, mean.data(), data->xipos + 3 * body.id, body.id,
                data->qfrc_passive);

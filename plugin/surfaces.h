@@ -48,14 +48,26 @@ class Surfaces {
   // Adds the forces on the other bodies to qfrc_passive: the impulses since Collect over `time`.
   void AddReactions(const mjModel* model, mjData* data, double time) const;
 
+  // Calls function(node, body, impulse) for each contact that was hit since Collect. `node` and
+  // `body` are MuJoCo's; `impulse` is what the body got, N m s and N s, about its centre of mass.
+  // The node got the opposite of the linear part.
+  template <class Function>
+  void ForEachImpulse(Function function) const {
+    for (const Touch& touch : touches_) {
+      if (touch.impulse.isZero(0)) continue;
+      function(level_->bodies.nodes[touch.node], bodies_[touch.body].id, touch.impulse);
+    }
+  }
+
  private:
   using Vector = Eigen::Vector3d;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-  // Another body that moves. Spatial vectors: first the angular part, then that of its centre of
-  // mass, in the world's axes.
+  // Another body. Spatial vectors: first the angular part, then that of its centre of mass, in the
+  // world's axes.
   struct Body {
     int id;
+    bool moves;                                   // false: as the trainer's ground
     Vector centre;                                // m
     Vector6 velocity;                             // rad/s, m/s
     Vector6 impulse;                              // N m s, N s
@@ -63,20 +75,22 @@ class Surfaces {
   };
   struct Touch {
     int node;
-    int body;  // index in bodies_; -1 = fixed
+    int body;  // index in bodies_
     ContactPair<double> law;
     Vector normal;    // the surface's, towards the node
     Vector start;     // where the node was
     double gap;       // from touching then, m; less than 0: overlap
     double advanced;  // by the surface since, along the normal, m
+    Vector6 impulse;  // that the body got since, N m s, N s
   };
 
   void CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
                       const mjContact& contact);
   int FindBody(const mjModel* model, mjData* data, int body);
+  void ReadMotion(const mjModel* model, mjData* data, Body* body);
   void LetHeavyBodiesGoOn();
   // Lets the node of a touch, with velocity v, hit the surface if it does; returns its velocity.
-  Vector Hit(const Touch& touch, const Vector& x, const Vector& v, double h);
+  Vector Hit(const Vector& x, const Vector& v, double h, Touch* touch);
 
   int instance_;
   std::vector<int> node_of_body_;  // -1: none
