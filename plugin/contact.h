@@ -39,6 +39,9 @@ class LevelContact {
   void Compute(const mjModel* model, mjData* data, int instance);
   void Advance(const mjModel*, mjData*, int) {}
 
+  // Those of the step that was computed last.
+  const Surfaces& surfaces() const { return surfaces_; }
+
  private:
   std::shared_ptr<const LevelContactModel> contact_;
   Surfaces surfaces_;
