@@ -85,7 +85,7 @@ class Springs {
 
   PluginState StateOf(const mjModel* model, mjData* data, int instance) const {
     return PluginState(data->plugin_state + model->plugin_stateadr[instance], nodes(),
-                       static_cast<int>(ways_.size()));
+                       static_cast<int>(ways_.size()), surfaces_.state_size());
   }
 
   int nodes() const { return springs_->level.system.node_count(); }

@@ -49,7 +49,8 @@ Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
     : instance_(instance),
       node_of_body_(model->nbody, -1),
       level_(&level),
-      laws_(LawsOf<double>(level.system.contact)) {
+      laws_(LawsOf<double>(level.system.contact)),
+      mocaps_(model) {
   const std::vector<int>& nodes = level.bodies.nodes;
   for (int body = 1; body < model->nbody; ++body) {
     const auto node = std::find(nodes.begin(), nodes.end(), model->body_weldid[body]);
@@ -57,12 +58,13 @@ Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
   }
 }
 
-void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state) {
+void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state,
+                       const double* poses) {
   touches_.clear();
   bodies_.clear();
   recovery_rate_ = kRecovery / model->opt.timestep;
   if (!level_->has_surface) return;
-  for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, data->contact[i]);
+  for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, poses, data->contact[i]);
   LetHeavyBodiesGoOn();
   // as in twin/contact.h: the ground before the geoms that move
   std::stable_partition(touches_.begin(), touches_.end(),
@@ -82,7 +84,7 @@ void Surfaces::LetHeavyBodiesGoOn() {
 }
 
 void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
-                              const mjContact& contact) {
+                              const double* poses, const mjContact& contact) {
   if (contact.includemargin >= 0) return;                  // left to MuJoCo
   if (contact.geom[0] < 0 || contact.geom[1] < 0) return;  // a flex
   int node = -1, node_geom = 0, other_body = 0;
@@ -113,28 +115,48 @@ void Surfaces::CollectContact(const mjModel* model, mjData* data, const NodeStat
     const double friction = std::min(model->geom_friction[3 * other_geom], kMostFriction);
     law = {.friction = friction, .cone = law.cone};
   }
-  touches_.push_back({node, FindBody(model, data, other_body), law, normal, X(state[node]), gap, 0,
-                      Vector6::Zero()});
+  const int index = FindBody(model, data, poses, other_body);
+  const Body& body = bodies_[index];
+  // by the velocity half way: the centre goes on
+  const Vector half_way = body.centre + 0.5 * body.lead * body.velocity.tail<3>();
+  const Vector surface =
+      body.velocity.tail<3>() + body.velocity.head<3>().cross(X(state[node]) - half_way);
+  touches_.push_back({node, index, law, normal, X(state[node]), gap,
+                      -body.lead * normal.dot(surface), Vector6::Zero()});
 }
 
-int Surfaces::FindBody(const mjModel* model, mjData* data, int body) {
+int Surfaces::FindBody(const mjModel* model, mjData* data, const double* poses, int body) {
   const auto known = std::find_if(bodies_.begin(), bodies_.end(),
                                   [&](const Body& other) { return other.id == body; });
   if (known != bodies_.end()) return static_cast<int>(known - bodies_.begin());
 
   const int root = model->body_weldid[body];
   Body found{body,
-             root != 0 && model->body_mocapid[root] < 0,
+             false,
+             0,
              Eigen::Map<const Vector>(data->xipos + 3 * body),
              Vector6::Zero(),
              Vector6::Zero(),
              Eigen::Matrix<double, 6, 6>::Zero()};
-  if (found.moves) ReadMotion(model, data, &found);
+  if (model->body_mocapid[root] >= 0) {
+    ReadMocapMotion(model, data, poses, &found);
+  } else if (root != 0) {
+    ReadMotion(model, data, &found);
+  }
   bodies_.push_back(found);
   return static_cast<int>(bodies_.size()) - 1;
 }
 
+void Surfaces::ReadMocapMotion(const mjModel* model, const mjData* data, const double* poses,
+                               Body* body) {
+  body->velocity = mocaps_.Velocity(model, data, body->id, poses);
+  body->moves = !body->velocity.isZero(0);
+  body->lead = model->opt.timestep;
+  body->centre -= body->lead * body->velocity.tail<3>();
+}
+
 void Surfaces::ReadMotion(const mjModel* model, mjData* data, Body* body) {
+  body->moves = true;
   mj_objectVelocity(model, data, mjOBJ_BODY, body->id, body->velocity.data(), 0);
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
   const int nv = model->nv;

@@ -8,10 +8,11 @@
 // s: velocity of the surface, W: inverse mass that the body shows at the node. The body gets -J,
 // MuJoCo the mean force of a step. What else drives the body (motors, the other bodies it hits)
 // MuJoCo only adds after this. So a body that is ten times as heavy as the nodes it touches goes on
-// within the step as it moves (W = 0), and a lighter one as -J alone lets it; of the overlap that
-// is left a part of s, along n, undoes a fifth in each step. A geom of higher priority than the
-// node's brings its own friction, and takes the bounce. Otherwise what is pressed between fingers
-// vibrates, and creeps out of the grip (docs/decisions, 048).
+// within the step as it moves (W = 0), and a lighter one as -J alone lets it. A mocap body goes on
+// from its last pose to the one that MuJoCo finds it at (plugin/mocap_motion.h). Of the overlap
+// that is left a part of s, along n, undoes a fifth in each step. A geom of higher priority than
+// the node's brings its own friction, and takes the bounce. Otherwise what is pressed between
+// fingers vibrates, and creeps out of the grip (docs/decisions, 048).
 #ifndef PHYSPRING_PLUGIN_SURFACES_H_
 #define PHYSPRING_PLUGIN_SURFACES_H_
 
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "plugin/level.h"
+#include "plugin/mocap_motion.h"
 #include "twin/contact.h"
 #include "twin/node_state.h"
 
@@ -31,8 +33,14 @@ class Surfaces {
   // `level` must outlive this.
   Surfaces(const mjModel* model, int instance, const Level& level);
 
+  // How many numbers of plugin_state hold the last poses of mocap bodies.
+  int state_size() const { return mocaps_.state_size(); }
+  // To be called at the end of a step.
+  void KeepPoses(const mjData* data, double* poses) const { mocaps_.Keep(data, poses); }
+
   // Takes the contacts that are this instance's, at the nodes' positions of `state`.
-  void Collect(const mjModel* model, mjData* data, const NodeStates<double>& state);
+  void Collect(const mjModel* model, mjData* data, const NodeStates<double>& state,
+               const double* poses);
 
   bool empty() const { return touches_.empty(); }
   // The node of each contact.
@@ -68,7 +76,8 @@ class Surfaces {
   struct Body {
     int id;
     bool moves;                                   // false: as the trainer's ground
-    Vector centre;                                // m
+    double lead;                                  // s, into the step: when it is where it was found
+    Vector centre;                                // m, where it is now
     Vector6 velocity;                             // rad/s, m/s
     Vector6 impulse;                              // N m s, N s
     Eigen::Matrix<double, 6, 6> inverse_inertia;  // 0: goes on as it moves
@@ -85,9 +94,10 @@ class Surfaces {
   };
 
   void CollectContact(const mjModel* model, mjData* data, const NodeStates<double>& state,
-                      const mjContact& contact);
-  int FindBody(const mjModel* model, mjData* data, int body);
+                      const double* poses, const mjContact& contact);
+  int FindBody(const mjModel* model, mjData* data, const double* poses, int body);
   void ReadMotion(const mjModel* model, mjData* data, Body* body);
+  void ReadMocapMotion(const mjModel* model, const mjData* data, const double* poses, Body* body);
   void LetHeavyBodiesGoOn();
   // Lets the node of a touch, with velocity v, hit the surface if it does; returns its velocity.
   Vector Hit(const Vector& x, const Vector& v, double h, Touch* touch);
@@ -96,6 +106,7 @@ class Surfaces {
   std::vector<int> node_of_body_;  // -1: none
   const Level* level_;
   ContactLaws<double> laws_;
+  MocapMotion mocaps_;
   double recovery_rate_ = 0;  // 1/s
   std::vector<Body> bodies_;
   std::vector<Touch> touches_;
