@@ -11,8 +11,12 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// Part of the overlap with a body that moves which is undone in a step.
+// Part of an overlap that is undone in a step.
 constexpr double kRecovery = 0.2;
+// Overlap with a fixed surface that is let be, m.
+constexpr double kAllowed = 1e-3;
+// How fast a fixed surface pushes a node out at most, m/s: it then rises by 2 mm.
+constexpr double kFastestRecovery = 0.2;
 // A body is heavy to nodes that weigh less than this part of what it shows them.
 constexpr double kHeavy = 0.1;
 // The bound of the contact law.
@@ -169,26 +173,38 @@ void Surfaces::ReadMotion(const mjModel* model, mjData* data, Body* body) {
 }
 
 Vector Surfaces::Hit(const Vector& x, const Vector& v, double h, Touch* touch) {
-  Body& body = bodies_[touch->body];
-  const Vector arm = x - body.centre;
-  Eigen::Matrix<double, 3, 6> at_node;  // velocity of the surface from that of the body
-  Vector surface = Vector::Zero();
   const double gap = touch->gap + touch->normal.dot(x - touch->start) - touch->advanced;
-  if (body.moves) {
-    at_node << -Cross(arm), Eigen::Matrix3d::Identity();
-    surface = at_node * body.velocity;
-    // a body that overlaps the node pushes it out
-    surface += recovery_rate_ * std::max(-gap, 0.0) * touch->normal;
+  const Body& body = bodies_[touch->body];
+  if (body.moves) return HitMoving(x - body.centre, v, h, gap, touch);
+  const Vector after = AfterFixed(*touch, v, h, gap);
+  if (after != v) {
+    const double mass = level_->system.mass[touch->node];
+    touch->impulse += Wrench(x - body.centre, mass * (v - after));
   }
+  return after;
+}
+
+Vector Surfaces::AfterFixed(const Touch& touch, const Vector& v, double h, double gap) const {
+  const double approach = touch.normal.dot(v);
+  const bool hits = gap + h * approach < 0 && approach < -kApproach;
+  const Vector after = hits ? Impact(v, touch.normal, touch.law) : v;
+  if (gap >= -kAllowed) return after;
+  const double least = std::min(recovery_rate_ * (-gap - kAllowed), kFastestRecovery);
+  return after + std::max(least - touch.normal.dot(after), 0.0) * touch.normal;
+}
+
+Vector Surfaces::HitMoving(const Vector& arm, const Vector& v, double h, double gap, Touch* touch) {
+  Body& body = bodies_[touch->body];
+  Eigen::Matrix<double, 3, 6> at_node;  // velocity of the surface from that of the body
+  at_node << -Cross(arm), Eigen::Matrix3d::Identity();
+  Vector surface = at_node * body.velocity;
+  // a body that overlaps the node pushes it out
+  surface += recovery_rate_ * std::max(-gap, 0.0) * touch->normal;
   const Vector u = v - surface;
   const double approach = touch->normal.dot(u);
   if (gap + h * approach >= 0 || approach >= -kApproach) return v;
-  Vector after = Impact(u, touch->normal, touch->law);
+  const Vector after = Impact(u, touch->normal, touch->law);
   const double mass = level_->system.mass[touch->node];
-  if (!body.moves) {
-    touch->impulse += Wrench(arm, mass * (v - after));
-    return after;
-  }
   const Eigen::Matrix3d inverse_mass =
       Eigen::Matrix3d::Identity() / mass + at_node * body.inverse_inertia * at_node.transpose();
   const Vector impulse = inverse_mass.inverse() * (after - u);

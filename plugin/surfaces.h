@@ -13,6 +13,9 @@
 // that is left a part of s, along n, undoes a fifth in each step. A geom of higher priority than
 // the node's brings its own friction, and takes the bounce. Otherwise what is pressed between
 // fingers vibrates, and creeps out of the grip (docs/decisions, 048).
+//
+// What stands still is as the trainer's ground: s = 0, W = 0. It undoes a fifth of the overlap d
+// beyond 1 mm, slowly:   v' . n >= min((d - 1 mm) / (5 H), 0.2 m/s)
 #ifndef PHYSPRING_PLUGIN_SURFACES_H_
 #define PHYSPRING_PLUGIN_SURFACES_H_
 
@@ -101,6 +104,9 @@ class Surfaces {
   void LetHeavyBodiesGoOn();
   // Lets the node of a touch, with velocity v, hit the surface if it does; returns its velocity.
   Vector Hit(const Vector& x, const Vector& v, double h, Touch* touch);
+  // The same where the surface stands still, and where it moves.
+  Vector AfterFixed(const Touch& touch, const Vector& v, double h, double gap) const;
+  Vector HitMoving(const Vector& arm, const Vector& v, double h, double gap, Touch* touch);
 
   int instance_;
   std::vector<int> node_of_body_;  // -1: none
