@@ -237,6 +237,7 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   ReadControllers(model, data, time, *plugin_state.known != 0 ? plugin_state.controllers : nullptr);
   ReadInternal(plugin_state.internal);
   ReadGrasps(plugin_state);
+  surfaces_.Forget();
   if (!IsFinite()) return;  // MuJoCo warns
   surfaces_.Collect(model, data, state_, plugin_state.poses);
   const Contact<double>::Pairs pairs = springs_->step.contact().FindPairs(state_, time);

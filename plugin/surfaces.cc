@@ -62,10 +62,14 @@ Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
   }
 }
 
-void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state,
-                       const double* poses) {
+void Surfaces::Forget() {
   touches_.clear();
   bodies_.clear();
+}
+
+void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state,
+                       const double* poses) {
+  Forget();
   recovery_rate_ = kRecovery / model->opt.timestep;
   if (!level_->has_surface) return;
   for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, poses, data->contact[i]);

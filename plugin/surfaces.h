@@ -41,6 +41,8 @@ class Surfaces {
   // To be called at the end of a step.
   void KeepPoses(const mjData* data, double* poses) const { mocaps_.Keep(data, poses); }
 
+  // Has no contacts any more.
+  void Forget();
   // Takes the contacts that are this instance's, at the nodes' positions of `state`.
   void Collect(const mjModel* model, mjData* data, const NodeStates<double>& state,
                const double* poses);
