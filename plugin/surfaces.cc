@@ -65,6 +65,7 @@ Surfaces::Surfaces(const mjModel* model, int instance, const Level& level)
 void Surfaces::Forget() {
   touches_.clear();
   bodies_.clear();
+  fixed_ = 0;
 }
 
 void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<double>& state,
@@ -75,8 +76,10 @@ void Surfaces::Collect(const mjModel* model, mjData* data, const NodeStates<doub
   for (int i = 0; i < data->ncon; ++i) CollectContact(model, data, state, poses, data->contact[i]);
   LetHeavyBodiesGoOn();
   // as in twin/contact.h: the ground before the geoms that move
-  std::stable_partition(touches_.begin(), touches_.end(),
-                        [&](const Touch& touch) { return !bodies_[touch.body].moves; });
+  const auto first_moving =
+      std::stable_partition(touches_.begin(), touches_.end(),
+                            [&](const Touch& touch) { return !bodies_[touch.body].moves; });
+  fixed_ = static_cast<std::size_t>(first_moving - touches_.begin());
 }
 
 void Surfaces::LetHeavyBodiesGoOn() {
@@ -176,32 +179,32 @@ void Surfaces::ReadMotion(const mjModel* model, mjData* data, Body* body) {
                           Eigen::Map<const Rows>(solution_.data(), 6, nv).transpose();
 }
 
-Vector Surfaces::Hit(const Vector& x, const Vector& v, double h, Touch* touch) {
-  const double gap = touch->gap + touch->normal.dot(x - touch->start) - touch->advanced;
-  const Body& body = bodies_[touch->body];
-  if (body.moves) return HitMoving(x - body.centre, v, h, gap, touch);
-  const Vector after = AfterFixed(*touch, v, h, gap);
-  if (after != v) {
-    const double mass = level_->system.mass[touch->node];
-    touch->impulse += Wrench(x - body.centre, mass * (v - after));
+double Surfaces::Gap(const Touch& touch, const Vector& x) {
+  return touch.gap + touch.normal.dot(x - touch.start) - touch.advanced;
+}
+
+Vector Surfaces::HitFixed(const Vector& x, const Vector& v, double h, Touch* touch) const {
+  const Vector& n = touch->normal;
+  const double gap = Gap(*touch, x), approach = n.dot(v);
+  const bool hits = gap + h * approach < 0 && approach < -kApproach;
+  if (!hits && gap >= -kAllowed) return v;
+  Vector after = hits ? Impact(v, n, touch->law) : v;
+  if (gap < -kAllowed) {
+    const double least = std::min(recovery_rate_ * (-gap - kAllowed), kFastestRecovery);
+    after += std::max(least - n.dot(after), 0.0) * n;
   }
+  const double mass = level_->system.mass[touch->node];
+  touch->impulse += Wrench(x - bodies_[touch->body].centre, mass * (v - after));
   return after;
 }
 
-Vector Surfaces::AfterFixed(const Touch& touch, const Vector& v, double h, double gap) const {
-  const double approach = touch.normal.dot(v);
-  const bool hits = gap + h * approach < 0 && approach < -kApproach;
-  const Vector after = hits ? Impact(v, touch.normal, touch.law) : v;
-  if (gap >= -kAllowed) return after;
-  const double least = std::min(recovery_rate_ * (-gap - kAllowed), kFastestRecovery);
-  return after + std::max(least - touch.normal.dot(after), 0.0) * touch.normal;
-}
-
-Vector Surfaces::HitMoving(const Vector& arm, const Vector& v, double h, double gap, Touch* touch) {
+Vector Surfaces::HitMoving(const Vector& x, const Vector& v, double h, Touch* touch) {
   Body& body = bodies_[touch->body];
+  const Vector arm = x - body.centre;
   Eigen::Matrix<double, 3, 6> at_node;  // velocity of the surface from that of the body
   at_node << -Cross(arm), Eigen::Matrix3d::Identity();
   Vector surface = at_node * body.velocity;
+  const double gap = Gap(*touch, x);
   // a body that overlaps the node pushes it out
   surface += recovery_rate_ * std::max(-gap, 0.0) * touch->normal;
   const Vector u = v - surface;
@@ -220,13 +223,15 @@ Vector Surfaces::HitMoving(const Vector& arm, const Vector& v, double h, double 
 }
 
 void Surfaces::Apply(const NodeStates<double>& state, double h, NodeStates<double>* next) {
-  for (Touch& touch : touches_) {
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    Touch& touch = touches_[i];
     Eigen::Map<Vector> v((*next)[touch.node].v);
-    v = Hit(X(state[touch.node]), v, h, &touch);
+    const Vector x = X(state[touch.node]);
+    v = i < fixed_ ? HitFixed(x, v, h, &touch) : HitMoving(x, v, h, &touch);
   }
-  for (Touch& touch : touches_) {
+  for (std::size_t i = fixed_; i < touches_.size(); ++i) {
+    Touch& touch = touches_[i];
     const Body& body = bodies_[touch.body];
-    if (!body.moves) continue;
     const Vector arm = X(state[touch.node]) - body.centre;
     const Vector surface = body.velocity.tail<3>() + body.velocity.head<3>().cross(arm);
     touch.advanced += h * touch.normal.dot(surface);

@@ -104,11 +104,11 @@ class Surfaces {
   void ReadMotion(const mjModel* model, mjData* data, Body* body);
   void ReadMocapMotion(const mjModel* model, const mjData* data, const double* poses, Body* body);
   void LetHeavyBodiesGoOn();
-  // Lets the node of a touch, with velocity v, hit the surface if it does; returns its velocity.
-  Vector Hit(const Vector& x, const Vector& v, double h, Touch* touch);
-  // The same where the surface stands still, and where it moves.
-  Vector AfterFixed(const Touch& touch, const Vector& v, double h, double gap) const;
-  Vector HitMoving(const Vector& arm, const Vector& v, double h, double gap, Touch* touch);
+  static double Gap(const Touch& touch, const Vector& x);  // m, less than 0: overlap
+  // Lets the node of a touch, at x with velocity v, hit the surface if it does; returns its
+  // velocity.
+  Vector HitFixed(const Vector& x, const Vector& v, double h, Touch* touch) const;
+  Vector HitMoving(const Vector& x, const Vector& v, double h, Touch* touch);
 
   int instance_;
   std::vector<int> node_of_body_;  // -1: none
@@ -118,6 +118,7 @@ class Surfaces {
   double recovery_rate_ = 0;  // 1/s
   std::vector<Body> bodies_;
   std::vector<Touch> touches_;
+  std::size_t fixed_ = 0;  // how many of them, the first ones, are with bodies that stand still
   std::vector<double> jacobian_, solution_;  // 6 x nv
 };
 
