@@ -37,7 +37,9 @@ LevelContact::LevelContact(const mjModel* model, int instance)
     : contact_(std::make_shared<LevelContactModel>(model, instance)),
       surfaces_(model, instance, contact_->level),
       state_(contact_->level.dofs.size()),
-      next_(state_.size()) {}
+      next_(state_.size()) {
+  CheckStateSize(model, instance, surfaces_.state_size(), Attributes(model, instance).where());
+}
 
 void LevelContact::Compute(const mjModel* model, mjData* data, int instance) {
   const Level& level = contact_->level;

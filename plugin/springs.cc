@@ -102,9 +102,7 @@ Springs::Springs(const mjModel* model, int instance)
   }
   const int size =
       PlainStateSize(springs_->level.bodies) + surfaces_.state_size() + springs_->internal_size();
-  if (model->plugin_statenum[instance] == size) return;
-  throw Error(fmt::format("{}: the model was compiled with {} numbers of state, expected {}", where,
-                          model->plugin_statenum[instance], size));
+  CheckStateSize(model, instance, size, where);
 }
 
 int Springs::StateSize(const mjModel* model, int instance) {
