@@ -37,9 +37,11 @@ LevelContact::LevelContact(const mjModel* model, int instance)
     : contact_(std::make_shared<LevelContactModel>(model, instance)),
       surfaces_(model, instance, contact_->level),
       state_(contact_->level.dofs.size()),
-      next_(state_.size()) {}
+      next_(state_.size()) {
+  CheckStateSize(model, instance, surfaces_.state_size(), Attributes(model, instance).where());
+}
 
-void LevelContact::Compute(const mjModel* model, mjData* data, int) {
+void LevelContact::Compute(const mjModel* model, mjData* data, int instance) {
   const Level& level = contact_->level;
   const EulerStep step(model);
   for (std::size_t i = 0; i < state_.size(); ++i) {
@@ -50,7 +52,7 @@ void LevelContact::Compute(const mjModel* model, mjData* data, int) {
   }
   next_ = state_;
   const double time = step.time();
-  surfaces_.Collect(model, data, state_);
+  surfaces_.Collect(model, data, state_, data->plugin_state + model->plugin_stateadr[instance]);
   const auto pairs = contact_->particles.FindPairs(state_, time);
   contact_->particles.Apply(state_, pairs, {}, 0, time, &next_, &impacts_);
   surfaces_.Apply(state_, time, &next_);

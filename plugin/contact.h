@@ -8,10 +8,12 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "plugin/level.h"
+#include "plugin/mocap_motion.h"
 #include "plugin/surfaces.h"
 #include "twin/contact.h"
 
@@ -33,11 +35,16 @@ class LevelContact {
 
   LevelContact(const mjModel* model, int instance);
 
-  static int StateSize(const mjModel*, int) { return 0; }
+  static int StateSize(const mjModel* model, int) { return MocapMotion(model).state_size(); }
 
-  void Reset(int, double*) const {}
+  void Reset(int size, double* state) const { std::fill_n(state, size, 0); }
   void Compute(const mjModel* model, mjData* data, int instance);
-  void Advance(const mjModel*, mjData*, int) {}
+  void Advance(const mjModel* model, mjData* data, int instance) {
+    surfaces_.KeepPoses(data, data->plugin_state + model->plugin_stateadr[instance]);
+  }
+
+  // Those of the step that was computed last.
+  const Surfaces& surfaces() const { return surfaces_; }
 
  private:
   std::shared_ptr<const LevelContactModel> contact_;

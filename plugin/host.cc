@@ -19,6 +19,7 @@ namespace {
 
 struct Functions {
   decltype(&::mj_applyFT) mj_applyFT;
+  decltype(&::mj_contactForce) mj_contactForce;
   decltype(&::mj_getPluginConfig) mj_getPluginConfig;
   decltype(&::mj_id2name) mj_id2name;
   decltype(&::mj_jacBodyCom) mj_jacBodyCom;
@@ -45,6 +46,7 @@ void Find(void* library, const char* name, Function* found) {
 Functions FunctionsOf(void* library) {
   Functions of;
   Find(library, "mj_applyFT", &of.mj_applyFT);
+  Find(library, "mj_contactForce", &of.mj_contactForce);
   Find(library, "mj_getPluginConfig", &of.mj_getPluginConfig);
   Find(library, "mj_id2name", &of.mj_id2name);
   Find(library, "mj_jacBodyCom", &of.mj_jacBodyCom);
@@ -129,6 +131,10 @@ using physpring::host;
 void mj_applyFT(const mjModel* m, mjData* d, const mjtNum force[3], const mjtNum torque[3],
                 const mjtNum point[3], int body, mjtNum* qfrc_target) {
   host.mj_applyFT(m, d, force, torque, point, body, qfrc_target);
+}
+
+void mj_contactForce(const mjModel* m, const mjData* d, int id, mjtNum result[6]) {
+  host.mj_contactForce(m, d, id, result);
 }
 
 const char* mj_getPluginConfig(const mjModel* m, int plugin_id, const char* attrib) {

@@ -208,6 +208,12 @@ void CheckOptions(const mjModel* model, const Level& level, const std::string& w
   }
 }
 
+void CheckStateSize(const mjModel* model, int instance, int size, const std::string& where) {
+  if (model->plugin_statenum[instance] == size) return;
+  throw Error(fmt::format("{}: the model was compiled with {} numbers of state, expected {}", where,
+                          model->plugin_statenum[instance], size));
+}
+
 void ReadJoinedPairs(const Attributes& attributes, Level* level) {
   SpringMassSystem& system = level->system;
   const std::vector<int> ends = attributes.Integers(kAttrSprings);

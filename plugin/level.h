@@ -48,6 +48,9 @@ Level ReadLevel(const mjModel* model, int instance, const Attributes& attributes
 // from ReadLevel, because the compiler counts a plugin's state before it decides about sleep.
 void CheckOptions(const mjModel* model, const Level& level, const std::string& where);
 
+// Throws Error if the model was compiled with another size of plugin_state: by another library.
+void CheckStateSize(const mjModel* model, int instance, int size, const std::string& where);
+
 // Reads which nodes springs join into `level`, as springs that do nothing: such nodes never
 // collide.
 void ReadJoinedPairs(const Attributes& attributes, Level* level);

@@ -7,21 +7,17 @@
 #include <exception>
 
 #include "plugin/contact.h"
+#include "plugin/force.h"
 #include "plugin/host.h"
+#include "plugin/instance.h"
 #include "plugin/springs.h"
 
 namespace physpring {
 namespace {
 
 template <class Plugin>
-Plugin* Get(const mjData* data, int instance) {
-  // MuJoCo keeps a plugin's data as an integer. NOLINTNEXTLINE(performance-no-int-to-ptr)
-  return reinterpret_cast<Plugin*>(data->plugin_data[instance]);
-}
-
-template <class Plugin>
 void Destroy(mjData* data, int instance) {
-  delete Get<Plugin>(data, instance);
+  delete InstanceOf<Plugin>(data, instance);
   data->plugin_data[instance] = 0;
 }
 
@@ -41,7 +37,8 @@ template <class Plugin>
 void Copy(mjData* to, const mjModel*, const mjData* from, int instance) {
   if (to == from) return;
   Destroy<Plugin>(to, instance);
-  to->plugin_data[instance] = reinterpret_cast<uintptr_t>(new Plugin(*Get<Plugin>(from, instance)));
+  to->plugin_data[instance] =
+      reinterpret_cast<uintptr_t>(new Plugin(*InstanceOf<Plugin>(from, instance)));
 }
 
 template <class Plugin>
@@ -52,23 +49,19 @@ void Reset(const mjModel* model, mjtNum* state, void* plugin, int instance) {
 template <class Plugin>
 void Compute(const mjModel* model, mjData* data, int instance, int) {
   try {
-    Get<Plugin>(data, instance)->Compute(model, data, instance);
+    InstanceOf<Plugin>(data, instance)->Compute(model, data, instance);
   } catch (const std::exception& error) {
     mju_warning("%s: %s", Plugin::kName, error.what());
   }
 }
 
+// What all plugins of the library have.
 template <class Plugin>
-void Register() {
-  int slot = 0;
-  if (mjp_getPlugin(Plugin::kName, &slot)) {
-    mju_warning("physpring: %s is loaded already, from another file, which stays", Plugin::kName);
-    return;
-  }
+mjpPlugin Describe(mjtPluginCapabilityBit capability) {
   mjpPlugin plugin;
   mjp_defaultPlugin(&plugin);
   plugin.name = Plugin::kName;
-  plugin.capabilityflags = mjPLUGIN_PASSIVE;
+  plugin.capabilityflags = capability;
   plugin.nattribute = static_cast<int>(Plugin::AttributeNames().size());
   plugin.attributes = Plugin::AttributeNames().data();
   plugin.nstate = Plugin::StateSize;
@@ -78,15 +71,26 @@ void Register() {
   plugin.reset = Reset<Plugin>;
   plugin.compute = Compute<Plugin>;
   plugin.advance = [](const mjModel* model, mjData* data, int instance) {
-    Get<Plugin>(data, instance)->Advance(model, data, instance);
+    InstanceOf<Plugin>(data, instance)->Advance(model, data, instance);
   };
-  mjp_registerPlugin(&plugin);
+  return plugin;
 }
 
 mjPLUGIN_LIB_INIT(physpring) {
   if (!FindHost()) return;
-  Register<Springs>();
-  Register<LevelContact>();
+  mjpPlugin force = Describe<ForceSensor>(mjPLUGIN_SENSOR);
+  force.nsensordata = ForceSensor::SensorSize;
+  force.needstage = mjSTAGE_ACC;
+  const mjpPlugin plugins[] = {Describe<Springs>(mjPLUGIN_PASSIVE),
+                               Describe<LevelContact>(mjPLUGIN_PASSIVE), force};
+  // all or none, because the sensors read the objects of the others
+  for (const mjpPlugin& plugin : plugins) {
+    int slot = 0;
+    if (!mjp_getPlugin(plugin.name, &slot)) continue;
+    mju_warning("physpring: %s is loaded already, from another file, which stays", plugin.name);
+    return;
+  }
+  for (const mjpPlugin& plugin : plugins) mjp_registerPlugin(&plugin);
 }
 
 }  // namespace

@@ -100,15 +100,14 @@ Springs::Springs(const mjModel* model, int instance)
                     "step of {} s",
                     where, springs_->substep, model->opt.timestep));
   }
-  const int size = PlainStateSize(springs_->level.bodies) + springs_->internal_size();
-  if (model->plugin_statenum[instance] == size) return;
-  throw Error(fmt::format("{}: the model was compiled with {} numbers of state, expected {}", where,
-                          model->plugin_statenum[instance], size));
+  const int size =
+      PlainStateSize(springs_->level.bodies) + surfaces_.state_size() + springs_->internal_size();
+  CheckStateSize(model, instance, size, where);
 }
 
 int Springs::StateSize(const mjModel* model, int instance) {
   const LevelBodies bodies = FindBodies(model, instance);
-  const int size = PlainStateSize(bodies);
+  const int size = PlainStateSize(bodies) + MocapMotion(model).state_size();
   if (bodies.controllers.empty() && !Attributes(model, instance).Has(kAttrEffects)) return size;
   try {
     return size + SpringsModel(model, instance).internal_size();
@@ -236,8 +235,9 @@ void Springs::Compute(const mjModel* model, mjData* data, int instance) {
   ReadControllers(model, data, time, *plugin_state.known != 0 ? plugin_state.controllers : nullptr);
   ReadInternal(plugin_state.internal);
   ReadGrasps(plugin_state);
+  surfaces_.Forget();
   if (!IsFinite()) return;  // MuJoCo warns
-  surfaces_.Collect(model, data, state_);
+  surfaces_.Collect(model, data, state_, plugin_state.poses);
   const Contact<double>::Pairs pairs = springs_->step.contact().FindPairs(state_, time);
   for (int i = 0; i < substeps; ++i) Substep(data->time, i * h, h, pairs);
   WriteForces(model, euler, substeps, data);
@@ -277,6 +277,7 @@ void Springs::Advance(const mjModel* model, mjData* data, int instance) {
   }
   std::copy_n(plugin_state.released, ways_.size(), plugin_state.were_released);
   *plugin_state.known = 1;
+  surfaces_.KeepPoses(data, plugin_state.poses);
   const double* internal = Internal(state_, springs_->step.first_internal());
   if (is_computed_) std::copy_n(internal, springs_->internal_size(), plugin_state.internal);
   is_computed_ = false;

@@ -65,16 +65,27 @@ class Springs {
   void Compute(const mjModel* model, mjData* data, int instance);
   void Advance(const mjModel* model, mjData* data, int instance);
 
+  // Those of the step that was computed last.
+  const Surfaces& surfaces() const { return surfaces_; }
+  // Calls function(body, impulse) for each controller: what the springs gave it in that step, N s.
+  template <class Function>
+  void ForEachPull(Function function) const {
+    for (std::size_t c = 0; c < ways_.size(); ++c) {
+      function(springs_->level.bodies.controllers[c], ways_[c].impulse);
+    }
+  }
+
  private:
   // A controller's way through the step.
   struct Way {
-    Eigen::Vector3d from, velocity, impulse;
+    Eigen::Vector3d from, velocity;
+    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
     bool is_mocap;
   };
 
   PluginState StateOf(const mjModel* model, mjData* data, int instance) const {
     return PluginState(data->plugin_state + model->plugin_stateadr[instance], nodes(),
-                       static_cast<int>(ways_.size()));
+                       static_cast<int>(ways_.size()), surfaces_.state_size());
   }
 
   int nodes() const { return springs_->level.system.node_count(); }

@@ -11,6 +11,6 @@ LIBRARY = os.path.join(os.path.dirname(os.path.dirname(__file__)), 'physpring', 
 
 
 def load():
-    """Registers physpring.springs and physpring.contact; once is enough."""
+    """Registers physpring.springs, .contact and .force; once is enough."""
     import mujoco  # in here, because importing mujoco calls this
     mujoco.mj_loadPluginLibrary(LIBRARY)

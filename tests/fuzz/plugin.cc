@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "plugin/contact.h"
+#include "plugin/force.h"
 #include "plugin/host.h"
 #include "plugin/springs.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -27,9 +28,12 @@ constexpr const char* kScene = R"(
       </instance>
     </plugin>
     <plugin plugin="physpring.contact"><instance name="c"/></plugin>
+    <plugin plugin="physpring.force">
+      <instance name="f"><config key="nodes" value="3"/></instance>
+    </plugin>
   </extension>
   <worldbody>
-    <body><plugin instance="s"/>
+    <body name="parent"><plugin instance="s"/>
       <body pos="0.1 0 0">
         <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/>
         <joint type="slide" axis="0 0 1"/><geom size="0.01" mass="0.1"/>
@@ -51,6 +55,7 @@ constexpr const char* kScene = R"(
       </body>
     </body>
   </worldbody>
+  <sensor><plugin instance="f" objtype="body" objname="parent"/></sensor>
 </mujoco>)";
 
 const mjModel& Model() {
@@ -86,7 +91,7 @@ void Make(const std::map<std::string, std::string>& lines, int instance, const c
     attributes.append(line == lines.end() ? "" : line->second).push_back('\0');
   }
   mjModel model = Model();  // its arrays are shared, but those that are set here
-  std::vector<int> addresses(2, 0), sizes(2, 0);
+  std::vector<int> addresses(3, 0), sizes(3, 0);
   model.plugin_attr = attributes.data();
   model.npluginattr = static_cast<mjtSize>(attributes.size());
   model.plugin_attradr = addresses.data();
@@ -106,6 +111,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::map<std::string, std::string> lines = Lines(TextOf(data, size));
   Make<Springs>(lines, 0, "physpring.springs 's': ");
   Make<LevelContact>(lines, 1, "physpring.contact 'c': ");
+  Make<ForceSensor>(lines, 2, "physpring.force 'f': ");
   return 0;
 }
 

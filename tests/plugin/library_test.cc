@@ -11,7 +11,7 @@ namespace physpring {
 namespace {
 
 void ExpectRegistered() {
-  for (const char* name : {"physpring.springs", "physpring.contact"}) {
+  for (const char* name : {"physpring.springs", "physpring.contact", "physpring.force"}) {
     int slot = -1;
     EXPECT_NE(mjp_getPlugin(name, &slot), nullptr) << name;
   }

@@ -16,16 +16,19 @@ VERSIONS = ['4.0.0', '4.0.1']
 
 MODEL = """<mujoco>
   <extension><plugin plugin="physpring.springs"><instance name="pair">
-    <config key="springs" value="0 1"/><config key="stiffness" value="10"/>
+    <config key="springs" value="0 1 1 2"/><config key="stiffness" value="10"/>
     <config key="rest_length" value="0.1"/><config key="dashpot" value="0.1"/>
-  </instance></plugin></extension>
-  <worldbody><body name="pair"><plugin instance="pair"/>NODES</body></worldbody>
+  </instance></plugin><plugin plugin="physpring.force"/></extension>
+  <worldbody><body name="pair"><plugin instance="pair"/>NODES</body>
+    <body name="hand" mocap="true" pos="0.35 0 0"><plugin instance="pair"/></body></worldbody>
+  <sensor><plugin plugin="physpring.force" objtype="body" objname="hand"/></sensor>
 </mujoco>"""
 NODE = """<body pos="{} 0 0"><inertial pos="0 0 0" mass="0.1" diaginertia="1 1 1"/>
   <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/>
   <joint type="slide" axis="0 0 1"/></body>"""
 
-# Two nodes 0.2 m apart pull each other; one libmujoco is loaded.
+# Two nodes 0.2 m apart pull each other, and a hand 0.15 m from one feels its spring; one libmujoco
+# is loaded.
 PROGRAM = """
 import mujoco
 {}
@@ -33,6 +36,7 @@ model = mujoco.MjModel.from_xml_string({!r})
 data = mujoco.MjData(model)
 mujoco.mj_step(model, data)
 assert data.qvel[0] > 0 > data.qvel[3], data.qvel
+assert abs(data.sensordata[0] + 10 * (0.15 - 0.1)) < 0.01, data.sensordata
 with open('/proc/self/maps') as maps:
     libraries = {{line.split()[-1] for line in maps if 'libmujoco' in line}}
 assert len(libraries) == 1, libraries
