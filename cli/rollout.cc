@@ -110,7 +110,12 @@ void AddCameras(const RolloutArguments& arguments, const Task& task, SweepHooks*
         !arguments.video.empty() && episode < arguments.sweep.first + arguments.films;
     if (!filmed && !images) return nullptr;
     const std::string video = filmed ? VideoPath(arguments, model.level, episode) : "";
-    return MakeCameraThread(model, {arguments.quality, video, arguments.cameras});
+    CameraOptions options{arguments.quality, video, arguments.cameras};
+    const SweepOptions& sweep = arguments.sweep;
+    if (sweep.vary_looks) {
+      options.looks = StartOf(*model.task, sweep.seed, episode, sweep.disturbance).seed;
+    }
+    return MakeCameraThread(model, options);
   };
 }
 
@@ -243,6 +248,8 @@ void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
       ->check(NumberBetween(0, 1))
       ->type_name("METRES")
       ->capture_default_str();
+  command->add_flag("--vary-looks", sweep.vary_looks,
+                    "each episode has other colours, lights and places of cameras, by its seed");
   AddThreads(command, &sweep.threads, "one episode each");
   command->add_option("--shard", arguments->shard, "run only every n-th episode, from the i-th on")
       ->check(IsShard(&sweep))

@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "rollout/looks.h"
 #include "rollout/video_file.h"
 #include "twin/error.h"
 
@@ -37,10 +38,19 @@ void Put(const Snapshot& snapshot, const mjModel& model, mjData* data) {
   PlaceForDrawing(model, data);
 }
 
+ModelPtr WithLooks(const mjModel& model, std::uint64_t seed) {
+  ModelPtr copy(mj_copyModel(nullptr, &model));
+  VaryLooks(seed, copy.get());
+  return copy;
+}
+
 class CameraThread : public Viewer {
  public:
   CameraThread(const TaskModel& model, const CameraOptions& options)
-      : task_(*model.task), model_(*model.model), options_(options) {
+      : task_(*model.task),
+        own_(options.looks ? WithLooks(*model.model, *options.looks) : nullptr),
+        model_(own_ ? *own_ : *model.model),
+        options_(options) {
     for (const std::string& name : task_.cameras) cameras_.push_back(Find(name));
     std::vector<std::string> shown = options_.video_shows;
     if (shown.empty() && !task_.cameras.empty()) shown.push_back(task_.cameras.front());
@@ -178,6 +188,7 @@ class CameraThread : public Viewer {
   }
 
   const Task& task_;
+  const ModelPtr own_;  // with looks of its own; null: it is drawn as it is
   const mjModel& model_;
   const CameraOptions options_;
   std::vector<mjvCamera> cameras_, shown_;

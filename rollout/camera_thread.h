@@ -4,8 +4,11 @@
 #ifndef PHYSPRING_ROLLOUT_CAMERA_THREAD_H_
 #define PHYSPRING_ROLLOUT_CAMERA_THREAD_H_
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "rollout/episode.h"
 #include "rollout/painter.h"
@@ -16,6 +19,7 @@ struct CameraOptions {
   PictureQuality quality = PictureQuality::kFast;
   std::string video;                     // file; empty: none
   std::vector<std::string> video_shows;  // cameras, side by side; empty: the task's first one
+  std::optional<std::uint64_t> looks = std::nullopt;  // drawn from this seed (looks.h)
 };
 
 // Throws Error where OSMesa or ffmpeg are missing, and for cameras that the scene does not have.

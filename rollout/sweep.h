@@ -22,6 +22,7 @@ struct SweepOptions {
   std::uint64_t seed = 0;
   Disturbance disturbance;
   PolicyChoice policy;
+  bool vary_looks = false;  // each episode has looks of its own (looks.h)
   int threads = 1;
   std::string folder;  // where episodes are kept and finished ones are found; empty: nowhere
   bool states = true;  // in the folder: the states of all frames, not only the actions

@@ -31,6 +31,7 @@ std::string FormatIdentity(const Task& task, const SweepOptions& options) {
                                  {"perturb", options.disturbance.start}};
   const std::string adapter = AdapterOf(task, options.policy);
   if (!adapter.empty()) json["policy_adapter_hash"] = HashFile(adapter);
+  if (options.vary_looks) json["vary_looks"] = true;
   return json.dump(1) + "\n";
 }
 
@@ -95,8 +96,8 @@ void OpenSweepFolder(const Task& task, const SweepOptions& options,
   }
   if (IsNewOrHolds(file, identity)) return;
   const JsonFields now(identity, file), before = ReadJsonFile(file);
-  for (const char* key :
-       {"task", "task_hash", "policy", "seed", "action_noise", "perturb", "policy_adapter_hash"}) {
+  for (const char* key : {"task", "task_hash", "policy", "seed", "action_noise", "perturb",
+                          "policy_adapter_hash", "vary_looks"}) {
     const auto value = [key](const JsonFields& fields) {
       return fields.json().value(key, nlohmann::ordered_json());
     };

@@ -45,12 +45,15 @@ class _Wish:
     size: int
     action_noise: float
     start_noise: float
+    vary_looks: bool
+    samples: tuple[str, ...]
 
-    def env(self) -> Any:
+    def env(self, episode: int = 0) -> Any:
         from physpring.envs import TaskEnv
-        pixels = '+pixels' if self.cameras else ''
-        return TaskEnv(self.task, self.level, obs='pixels+particles' if pixels else 'particles',
-                       action_noise=self.action_noise, start_noise=self.start_noise)
+        obs = 'pixels+particles+sensors' if self.cameras else 'particles+sensors'
+        sample = self.samples[episode % len(self.samples)] if self.samples else ''
+        return TaskEnv(self.task, self.level, obs=obs, action_noise=self.action_noise,
+                       start_noise=self.start_noise, vary_looks=self.vary_looks, sample=sample)
 
 
 def _dataset_class() -> Any:
@@ -75,6 +78,8 @@ def _look(wish: _Wish, seen: dict[str, Any]) -> dict[str, Any]:
     if wish.particles >= 0:
         frame['observation.environment_state'] = some_particles(seen['particles'],
                                                                 wish.particles).astype(np.float32)
+    for name, reading in seen.get('sensors', {}).items():
+        frame[f'observation.sensors.{name}'] = reading.astype(np.float32)
     for camera in wish.cameras:
         frame[f'observation.images.{camera}'] = scenes().resize_with_pad(
             seen['pixels'][camera], wish.size, wish.size)
@@ -83,7 +88,7 @@ def _look(wish: _Wish, seen: dict[str, Any]) -> dict[str, Any]:
 
 def _frames(wish: _Wish, episode: int) -> tuple[int, bool, list[dict[str, Any]]]:
     """Number, verdict and frames of an episode."""
-    env = wish.env()
+    env = wish.env(episode)
     seen, _ = env.reset(seed=wish.seed, options={'episode': episode})
     frames: list[dict[str, Any]] = []
     over = False
@@ -125,6 +130,8 @@ def record(task: str | os.PathLike,
            size: int = 96,
            action_noise: float = 0,
            start_noise: float = 0,
+           vary_looks: bool = False,
+           samples: str | os.PathLike = '',
            keep: str = 'successes',
            threads: int | None = None) -> RecordedEpisodes:
     """Runs episodes 0, 1, ... of `physpring rollout --seed SEED` and writes those that succeed
@@ -133,8 +140,9 @@ def record(task: str | os.PathLike,
     A frame has `observation.state` (the robot's state), `observation.environment_state` (so many
     particles of level 0 [m], evenly spaced; 0: all, -1: none), `observation.images.CAMERA` (size x
     size pixels, undistorted, with bars) for each of `cameras`, `action` as the task has it, and
-    `next.reward`, `next.success`, `next.done`. What else is needed to run it again is in
-    meta/physpring.json. Nothing is left in `folder` if it fails.
+    `next.reward`, `next.success`, `next.done`; for each of the task's sensors `observation.sensors.NAME`. What else is needed to run it again is in
+    meta/physpring.json. vary_looks: each episode has other colours, lights and places of cameras.
+    samples: folder of `physpring export --samples N`; episodes take its twins in turn. Nothing is left in `folder` if it fails.
     """
     from physpring._mujoco import task_folder
     dataset_class = _dataset_class()
@@ -149,7 +157,7 @@ def record(task: str | os.PathLike,
     wish = _Wish(os.fspath(task_folder(task)), whole('level', level, 0), policy,
                  whole('seed', seed, 0), particles, tuple(cameras), size,
                  number('action_noise', action_noise, 0, 1),
-                 number('start_noise', start_noise, 0, 1))
+                 number('start_noise', start_noise, 0, 1), bool(vary_looks), _folders(samples))
     env = wish.env()
     setting = env._setting.task
     if setting.rate != int(setting.rate):
@@ -166,6 +174,17 @@ def record(task: str | os.PathLike,
         shutil.rmtree(draft, ignore_errors=True)
         raise
     return RecordedEpisodes(root, kept, episodes, frames)
+
+
+def _folders(samples: str | os.PathLike) -> tuple[str, ...]:
+    if not samples:
+        return ()
+    found = tuple(os.fspath(path.resolve()) for path in sorted(pathlib.Path(samples).glob('sample_*'))
+                  if path.is_dir())
+    if not found:
+        raise _core.Error(f'{samples}: has no folders sample_0000, ...; `physpring export --samples` '
+                          'makes them')
+    return found
 
 
 def _write(dataset_class: Any, draft: pathlib.Path, wish: _Wish, env: Any, episodes: int, keep: str,
@@ -235,7 +254,7 @@ def replay(folder: str | os.PathLike,
     except (OSError, ValueError) as error:
         raise _core.Error(f'{root / _META}: cannot be read: {error}') from None
     numbers = story.pop('episodes')
-    wish = _Wish(**{**story, 'cameras': ()})
+    wish = _Wish(**{**story, 'cameras': (), 'samples': tuple(story['samples'])})
     if task is not None:
         from physpring._mujoco import task_folder
         wish = dataclasses.replace(wish, task=os.fspath(task_folder(task)))
@@ -248,6 +267,8 @@ def replay(folder: str | os.PathLike,
     env = wish.env()
     for row, episode in enumerate(numbers):
         own = index == row
+        if wish.samples:
+            env = wish.env(episode)
         env.reset(seed=wish.seed, options={'episode': episode})
         info: dict[str, Any] = {}
         for action in actions[own]:

@@ -50,6 +50,7 @@ def sweep(task: str | os.PathLike,
           episodes: int = 1,
           levels: Sequence[int] = (0,),
           *,
+          policy_adapter: str | os.PathLike = '',
           executor: concurrent.futures.Executor | None = None,
           workers: int | None = None,
           output: str | os.PathLike | None = None,
@@ -66,6 +67,7 @@ def sweep(task: str | os.PathLike,
 
     task: one of physpring.envs ('rope_routing'), or a folder, which workers on other machines must
         have at the same path. policy: 'scripted', 'random', 'replay:PATH' or 'ws://HOST:PORT'.
+    policy_adapter: file for a 'ws://' policy, as of `physpring rollout --policy-adapter`.
     executor: any concurrent.futures.Executor, as that of a Dask client (client.get_executor()) or of
         Ray; physpring must be installed on the workers. None: processes of this machine, `workers`
         of them (None: all cores). An episode whose worker is lost is run again, on those that are
@@ -85,6 +87,7 @@ def sweep(task: str | os.PathLike,
     if len(set(levels)) != len(levels) or not levels:
         raise _core.Error(f'levels is {levels}, expected different ones')
     job = {'task': os.fspath(task_folder(task).resolve()), 'policy': policy, 'levels': levels,
+           'policy_adapter': os.path.abspath(policy_adapter) if policy_adapter else '',
            'seed': seed, 'action_noise': action_noise, 'start_noise': start_noise, 'states': states}
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary if output is None else output)
@@ -212,8 +215,9 @@ def _episode(job: Mapping[str, Any], number: int) -> dict[str, bytes]:
 
 def _run(job: Mapping[str, Any], folder: pathlib.Path, first: int, episodes: int) -> None:
     """Episodes of a job, into a folder."""
-    scenes().sweep(job['task'], os.fspath(folder), job['levels'], job['policy'], first, episodes,
-                   job['seed'], job['action_noise'], job['start_noise'], 1, job['states'])
+    scenes().sweep(job['task'], os.fspath(folder), job['levels'], job['policy'],
+                   job['policy_adapter'], first, episodes, job['seed'], job['action_noise'],
+                   job['start_noise'], 1, job['states'])
 
 
 def _train(name: str, given: list[_core.Recording], options: dict[str, Any]) -> bytes:

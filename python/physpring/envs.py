@@ -37,14 +37,16 @@ class _Setting:
     """A task at one level, and what its observations and actions are."""
 
     def __init__(self, task: str | os.PathLike, level: int, obs: str, width: int, height: int,
-                 quality: str):
-        kinds = ('particles', 'nodes', 'pixels', 'pixels+particles')
-        if obs not in kinds:
-            raise _core.Error(f'obs is {obs!r}, expected one of {", ".join(kinds)}')
+                 quality: str, vary_looks: bool, sample: str | os.PathLike):
+        kinds = {'particles', 'nodes', 'pixels', 'sensors'}
+        if not obs or not kinds.issuperset(obs.split('+')):
+            raise _core.Error(f'obs is {obs!r}, expected some of {", ".join(sorted(kinds))}, '
+                              "as 'pixels+particles'")
         whole('level', level, 0)
         whole('width', width, 0, 8192)
         whole('height', height, 0, 8192)
-        self.task = scenes().Task.load(os.fspath(task_folder(task)), level, quality, width, height)
+        self.task = scenes().Task.load(os.fspath(task_folder(task)), level, quality, width, height,
+                                       vary_looks, os.fspath(sample))
         self.seen = obs.split('+')
         self.observation_space = self._observations()
         self.action_space = self._actions()
@@ -60,6 +62,11 @@ class _Setting:
         if 'pixels' in self.seen:
             picture = spaces.Box(0, 255, (task.height, task.width, 3), np.uint8)
             parts['pixels'] = spaces.Dict({camera: picture for camera in task.cameras})
+        if 'sensors' in self.seen:
+            parts['sensors'] = spaces.Dict({
+                name: spaces.Box(-np.inf, np.inf, (size,), np.float64)
+                for name, size in task.sensors
+            })
         return spaces.Dict(parts)
 
     def _actions(self) -> spaces.Box:
@@ -79,6 +86,8 @@ class _Setting:
             seen['nodes'] = scene.nodes
         if 'pixels' in self.seen:
             seen['pixels'] = scene.look()
+        if 'sensors' in self.seen:
+            seen['sensors'] = scene.sensors
         return seen
 
     @staticmethod
@@ -113,13 +122,16 @@ class TaskEnv(gymnasium.Env):
     level: of the twin, 0 (dense) to 3.
     obs: what an observation has besides `robot`, the robot's state: 'particles' (N, 3), the
         particles of level 0 [m], lifted from the level that is simulated, so that one policy serves
-        all levels; 'nodes', those of the level; 'pixels', a picture of each camera; or
-        'pixels+particles'.
+        all levels; 'nodes', those of the level; 'pixels', a picture of each camera; 'sensors', what
+        the task's `sensors` read, as forces of contact; or several, as 'pixels+particles'.
     width, height: of pictures, pixels; default: the task's. quality: 'fast' or 'high'.
     action_noise: m, standard deviation of an error of the hand's x and y, constant in an episode.
     start_noise: m, by which the object lies elsewhere, in a random direction.
     cells: whether episodes start in the cells of the task's grid one after the other, as in
         `physpring rollout`; else in random ones.
+    vary_looks: whether each episode has other colours, lights and places of cameras, by its seed.
+    sample: folder with the level of another twin of the same nodes, as one of those that
+        `physpring export --samples N --springs plugin --controllers none` writes; '': the task's.
 
     Actions: x y z [m], the quaternion w x y z of the hand and the gripper (0 open, 1 closed), all
     absolute; or the controls of joints. The reward is 1 in a frame in which the task's rule is met,
@@ -144,10 +156,12 @@ class TaskEnv(gymnasium.Env):
                  action_noise: float = 0,
                  start_noise: float = 0,
                  cells: bool = True,
+                 vary_looks: bool = False,
+                 sample: str | os.PathLike = '',
                  render_mode: str | None = None):
         if render_mode not in (None, 'rgb_array'):
             raise _core.Error(f"render_mode is {render_mode!r}, expected None or 'rgb_array'")
-        self._setting = _Setting(task, level, obs, width, height, quality)
+        self._setting = _Setting(task, level, obs, width, height, quality, vary_looks, sample)
         self._scene = scenes().Scene(self._setting.task)
         self._noise = _noise(action_noise, start_noise)
         self._episodes = _Episodes(self._setting, cells)
@@ -184,10 +198,11 @@ class TaskEnv(gymnasium.Env):
         reward = 1.0 if self._scene.met else 0.0
         return (self._setting.observe(self._scene), reward, False, self._scene.over, self._inform())
 
-    def policy_action(self, policy: str = 'scripted') -> NDArray[np.float64]:
+    def policy_action(self, policy: str = 'scripted',
+                      policy_adapter: str | os.PathLike = '') -> NDArray[np.float64]:
         """What a policy of `physpring rollout` does now: 'scripted' (the task's own), 'random',
-        'replay:PATH', or 'ws://HOST:PORT'."""
-        return self._scene.act(policy)
+        'replay:PATH', or 'ws://HOST:PORT', spoken to by the file `policy_adapter`."""
+        return self._scene.act(policy, os.fspath(policy_adapter))
 
     def render(self) -> Any:
         if self.render_mode is None:
@@ -216,11 +231,13 @@ class TaskVectorEnv(gymnasium.vector.VectorEnv):
                  action_noise: float = 0,
                  start_noise: float = 0,
                  cells: bool = True,
+                 vary_looks: bool = False,
+                 sample: str | os.PathLike = '',
                  threads: int | None = None,
                  render_mode: str | None = None):
         if render_mode is not None:
             raise _core.Error('a vector of environments has no render_mode')
-        self._setting = _Setting(task, level, obs, width, height, quality)
+        self._setting = _Setting(task, level, obs, width, height, quality, vary_looks, sample)
         whole('num_envs', num_envs, 1)
         self._scenes = [scenes().Scene(self._setting.task) for _ in range(num_envs)]
         self._noise = _noise(action_noise, start_noise)

@@ -154,15 +154,22 @@ class PolicyServer:
         msgpack = _needed('msgpack')
         pack = functools.partial(msgpack.packb, default=_pack)
         await connection.send(pack({'server': 'physpring.lerobot'}))
-        async for message in connection:
-            request = msgpack.unpackb(message, object_hook=_unpack)
-            try:
-                actions = await asyncio.to_thread(self._policy.actions, request)
-            except Exception as error:  # the client is to say what went wrong
-                await connection.send(f'{type(error).__name__}: {error}')
-                await connection.close(1011, 'the policy failed')
-                return
-            await connection.send(pack({'actions': actions}))
+        from websockets.exceptions import ConnectionClosed
+        try:
+            async for message in connection:
+                await self._answer(connection, message, pack, msgpack)
+        except ConnectionClosed:  # the client is gone, as after an episode
+            pass
+
+    async def _answer(self, connection: Any, message: bytes, pack: Any, msgpack: Any) -> None:
+        request = msgpack.unpackb(message, object_hook=_unpack)
+        try:
+            actions = await asyncio.to_thread(self._policy.actions, request)
+        except Exception as error:  # the client is to say what went wrong
+            await connection.send(f'{type(error).__name__}: {error}')
+            await connection.close(1011, 'the policy failed')
+            return
+        await connection.send(pack({'actions': actions}))
 
 
 def serve(checkpoint: str | os.PathLike, host: str = '127.0.0.1', port: int = 8000,
@@ -190,6 +197,9 @@ def _main() -> None:
     recorder.add_argument('--size', type=int, default=96, help='of pictures, pixels')
     recorder.add_argument('--threads', type=int)
     recorder.add_argument('--action-noise', type=float, default=0.0)
+    recorder.add_argument('--vary-looks', action='store_true',
+                          help='other colours, lights and places of cameras in each episode')
+    recorder.add_argument('--samples', default='', help='folder of physpring export --samples')
     recorder.add_argument('--all', action='store_true', help='also episodes that fail')
     server = commands.add_parser('serve', help='a policy, in the protocol of openpi')
     server.add_argument('checkpoint')

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
@@ -84,8 +85,18 @@ class Connection {
     io_.restart();
     thread_ = std::thread([this] { io_.run(); });
   }
+  // Says that it goes, so that the server need not wonder, and does not wait long for an answer.
   ~Connection() {
-    asio::post(io_, [this] { stream_.next_layer().close(); });
+    constexpr Seconds kLongest(1);
+    asio::steady_timer timer(io_);
+    asio::post(io_, [this, &timer, kLongest] {
+      timer.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(kLongest));
+      timer.async_wait([this](auto) { stream_.next_layer().close(); });
+      stream_.async_close(beast::websocket::close_code::normal, [this, &timer](auto) {
+        stream_.next_layer().close();
+        timer.cancel();
+      });
+    });
     if (thread_.joinable()) thread_.join();
   }
   Connection(const Connection&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures in other sizes. That the bytes are Pillow's is shown in policy_adapter_test.py.
+// Pictures in other sizes. That the bytes are Pillow's is shown in openpi_policies_test.py.
 #include "rollout/picture_size.h"
 
 #include <gtest/gtest.h>

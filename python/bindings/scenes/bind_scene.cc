@@ -132,18 +132,26 @@ void BindScene(nb::module_& module) {
   });
   scene.def(
       "act",
-      [](Class& self, const std::string& policy) {
+      [](Class& self, const std::string& policy, const std::string& policy_adapter) {
+        const PolicyChoice choice{policy, policy_adapter, {}};
         const InUse in_use({&self});
         Eigen::VectorXd action;
         if (policy.starts_with("ws://")) {  // it may wait long
-          RunWatched(nb::none(), [&](const TellShare& /*tell*/) { action = self.Act(policy); });
+          RunWatched(nb::none(), [&](const TellShare& /*tell*/) { action = self.Act(choice); });
         } else {
           const nb::gil_scoped_release unlocked;
-          action = self.Act(policy);
+          action = self.Act(choice);
         }
         return CopyOf(action);
       },
-      nb::arg("policy"));
+      nb::arg("policy"), nb::arg("policy_adapter"));
+  scene.def_prop_ro("sensors", [](const Class& self) {
+    nb::dict sensors;
+    for (const auto& [name, reading] : Idle(self).episode().observation().sensors) {
+      sensors[name.c_str()] = CopyOf(reading);
+    }
+    return sensors;
+  });
   scene.def_prop_ro("frame", [](const Class& self) { return Idle(self).episode().frame(); });
   scene.def_prop_ro("over", [](const Class& self) { return Idle(self).episode().over(); });
   scene.def_prop_ro("success", [](const Class& self) { return Idle(self).episode().success(); });

@@ -22,9 +22,9 @@ namespace {
 namespace nb = nanobind;
 
 nb::tuple SweepTask(const std::string& folder, const std::string& output,
-                    const std::vector<int>& levels, const std::string& policy, int first,
-                    int episodes, std::uint64_t seed, double action_noise, double start_noise,
-                    int threads, bool states) {
+                    const std::vector<int>& levels, const std::string& policy,
+                    const std::string& policy_adapter, int first, int episodes, std::uint64_t seed,
+                    double action_noise, double start_noise, int threads, bool states) {
   if (!IsPolicy(policy)) {
     throw Error("policy is '" + policy +
                 "', expected scripted, random, replay:PATH or ws://HOST:PORT");
@@ -42,6 +42,7 @@ nb::tuple SweepTask(const std::string& folder, const std::string& output,
     options.seed = seed;
     options.disturbance = {action_noise, start_noise};
     options.policy.text = policy;
+    options.policy.adapter = policy_adapter;
     options.threads = threads;
     options.folder = output;
     options.states = states;
@@ -87,8 +88,8 @@ void BindSweep(nb::module_& module) {
              nb::arg("occlusion"), nb::arg("vary"), nb::arg("seed"), nb::arg("duration").none(),
              nb::arg("fps"), nb::arg("effects"));
   module.def("sweep", &SweepTask, nb::arg("task"), nb::arg("output"), nb::arg("levels"),
-             nb::arg("policy"), nb::arg("first"), nb::arg("episodes"), nb::arg("seed"),
-             nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"),
+             nb::arg("policy"), nb::arg("policy_adapter"), nb::arg("first"), nb::arg("episodes"),
+             nb::arg("seed"), nb::arg("action_noise"), nb::arg("start_noise"), nb::arg("threads"),
              nb::arg("states"));
   module.def(
       "is_finished",

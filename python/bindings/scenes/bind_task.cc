@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -24,11 +25,13 @@ void BindTask(nb::module_& module) {
   nb::class_<Class> task(module, "Task");
   task.def_static(
       "load",
-      [](const std::string& folder, int level, const std::string& quality, int width, int height) {
+      [](const std::string& folder, int level, const std::string& quality, int width, int height,
+         bool vary_looks, const std::string& sample) {
         return std::const_pointer_cast<Class>(
-            LoadTask(folder, level, QualityOf(quality), width, height));
+            LoadTask(folder, level, {QualityOf(quality), width, height, vary_looks, sample}));
       },
-      nb::arg("folder"), nb::arg("level"), nb::arg("quality"), nb::arg("width"), nb::arg("height"));
+      nb::arg("folder"), nb::arg("level"), nb::arg("quality"), nb::arg("width"), nb::arg("height"),
+      nb::arg("vary_looks") = false, nb::arg("sample") = "");
   task.def_prop_ro("warnings", [](const Class& self) { return self.warnings; });
   task.def_prop_ro("name", [](const Class& self) { return self.task.name; });
   task.def_prop_ro("prompt", [](const Class& self) { return self.task.prompt; });
@@ -36,6 +39,14 @@ void BindTask(nb::module_& module) {
   task.def_prop_ro("rate", [](const Class& self) { return self.task.rate; });
   task.def_prop_ro("levels", [](const Class& self) { return self.task.levels.size(); });
   task.def_prop_ro("cameras", [](const Class& self) { return self.task.cameras; });
+  task.def_prop_ro("sensors", [](const Class& self) {  // names, and how many numbers
+    std::vector<std::pair<std::string, int>> sensors;
+    for (std::size_t i = 0; i < self.model.sensors.size(); ++i) {
+      const int size = self.model.model->sensor_dim[self.model.sensors[i]];
+      sensors.emplace_back(self.task.sensors[i], size);
+    }
+    return sensors;
+  });
   task.def_prop_ro("width", [](const Class& self) { return self.task.width; });
   task.def_prop_ro("height", [](const Class& self) { return self.task.height; });
   task.def_prop_ro("action_size", [](const Class& self) { return self.task.robot.action_size(); });

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "rollout/mujoco_library.h"
@@ -12,16 +13,24 @@
 namespace physpring {
 
 std::shared_ptr<const TaskAtLevel> LoadTask(const std::string& folder, int level,
-                                            PictureQuality quality, int width, int height) {
+                                            const LoadOptions& options) {
   ExpectMujoco();
   LoadPluginLibrary();
   const auto loaded = std::make_shared<TaskAtLevel>();
   loaded->task = ReadTask(folder);
-  if (width > 0) loaded->task.width = width;
-  if (height > 0) loaded->task.height = height;
-  loaded->quality = quality;
+  Task& task = loaded->task;
+  if (options.width > 0) task.width = options.width;
+  if (options.height > 0) task.height = options.height;
+  if (!options.sample.empty()) {
+    for (std::string& file : task.levels) {
+      const std::filesystem::path name = std::filesystem::path(file).filename();
+      file = (std::filesystem::path(options.sample) / name).string();
+    }
+  }
+  loaded->quality = options.quality;
+  loaded->vary_looks = options.vary_looks;
   loaded->model = MakeTaskModel(loaded->task, level, &loaded->warnings);
-  PreparePictures(quality, loaded->task.width, loaded->task.height, loaded->model.model.get());
+  PreparePictures(options.quality, task.width, task.height, loaded->model.model.get());
   return loaded;
 }
 
@@ -33,6 +42,7 @@ void TaskScene::Begin(const EpisodeStart& start) {
   result_.episode.start = start;
   result_.episode.level = task_->model.level;
   policy_.reset();
+  if (task_->vary_looks) viewer_.reset();
   episode_.reset();  // where it does not begin, there is none
   SteppedEpisode episode(task_->model, &simulation_, &result_);
   episode.Begin();
@@ -68,17 +78,21 @@ void TaskScene::Step(const Eigen::VectorXd& action) {
 
 std::map<std::string, Image> TaskScene::Look() {
   static_cast<void>(episode());
-  if (!viewer_) viewer_ = MakeCameraThread(task_->model, {task_->quality, "", {}});
+  if (!viewer_) {
+    CameraOptions options{task_->quality, "", {}};
+    if (task_->vary_looks) options.looks = result_.episode.start.seed;
+    viewer_ = MakeCameraThread(task_->model, options);
+  }
   return viewer_->Look(simulation_.data());
 }
 
-Eigen::VectorXd TaskScene::Act(const std::string& policy) {
+Eigen::VectorXd TaskScene::Act(const PolicyChoice& choice) {
   Observation observation = episode().observation();
-  if (!policy_ || policy_name_ != policy) {
+  if (!policy_ || choice_.text != choice.text || choice_.adapter != choice.adapter) {
     const EpisodeStart& start = result_.episode.start;
-    policy_ = MakePolicy(task_->task, {policy, {}}, task_->model.level, start.episode);
+    policy_ = MakePolicy(task_->task, choice, task_->model.level, start.episode);
     policy_->Reset(start.seed);
-    policy_name_ = policy;
+    choice_ = choice;
   }
   if (policy_->NeedsImages()) observation.images = Look();
   return policy_->Act(observation);

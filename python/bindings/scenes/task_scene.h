@@ -27,11 +27,18 @@ struct TaskAtLevel {
   TaskModel model;
   std::vector<std::string> warnings;
   PictureQuality quality = PictureQuality::kFast;
+  bool vary_looks = false;  // each episode has looks of its own
 };
 
-// `width` and `height` of pictures, pixels; 0: the task's.
+struct LoadOptions {
+  PictureQuality quality = PictureQuality::kFast;
+  int width = 0, height = 0;  // of pictures, pixels; 0: the task's
+  bool vary_looks = false;
+  std::string sample;  // folder with levels of another twin of the same nodes; empty: the task's
+};
+
 std::shared_ptr<const TaskAtLevel> LoadTask(const std::string& folder, int level,
-                                            PictureQuality quality, int width, int height);
+                                            const LoadOptions& options);
 
 class TaskScene {
  public:
@@ -54,8 +61,8 @@ class TaskScene {
   std::map<std::string, Image> Look();
 
   // The next action of a policy that MakePolicy knows, from the episode's beginning on. Another
-  // `policy` than before begins anew.
-  Eigen::VectorXd Act(const std::string& policy);
+  // one than before begins anew.
+  Eigen::VectorXd Act(const PolicyChoice& choice);
 
   const TaskAtLevel& task() const { return *task_; }
   // Throws Error where no episode has begun.
@@ -72,7 +79,7 @@ class TaskScene {
   std::optional<SteppedEpisode> episode_;
   std::unique_ptr<Viewer> viewer_;  // from the first look on
   std::unique_ptr<Policy> policy_;
-  std::string policy_name_;
+  PolicyChoice choice_;  // that made it
 };
 
 }  // namespace physpring

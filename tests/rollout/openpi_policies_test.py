@@ -2,7 +2,7 @@
 """The adapters of models/adapters against openpi's own code: its servers' transforms take what we
 send, and its actions move our robots.
 
-policy_adapter_test.py PHYSPRING MAKE_SMALL_TASK ADAPTERS ENVIRONMENT
+openpi_policies_test.py PHYSPRING MAKE_SMALL_TASK ADAPTERS ENVIRONMENT
 """
 import json
 import math
@@ -64,6 +64,15 @@ class PolicyAdapterTest(unittest.TestCase):
             robot.update(fingers=fingers, open=[0.0] * fingers, closed=[0.05] * fingers)
         self.change('task.json', '{"target": "target", "hand": "hand"}', json.dumps(robot))
 
+    def with_finger(self):
+        self.change('scene.xml', '<site name="hand"/>\n', '<site name="hand"/>\n<body><joint '
+                    'name="f" type="slide" axis="0 1 0" damping="1" armature="0.1"/><geom size="0.01" '
+                    'mass="0.05" contype="0" conaffinity="0"/></body>')
+        self.change('scene.xml', '</mujoco>', '<actuator><position name="g" joint="f" kp="200" '
+                    'kv="20"/></actuator></mujoco>')
+        self.change('task.json', '"hand": "hand"}',
+                    '"hand": "hand", "actuators": ["g"], "open": [0], "closed": [0.02]}')
+
     def rollout(self, name):
         """Arrays of the episode's file and the server's log, after a run against `name`."""
         command = [PYTHON, HERE / 'openpi_policies_server.py', name, self.log]
@@ -91,14 +100,17 @@ class PolicyAdapterTest(unittest.TestCase):
             self.assertAlmostEqual(one, other, delta=delta)
 
     def test_libero_takes_our_hand_and_moves_it(self):
+        self.with_finger()
         robot, actions, log = self.rollout('libero')
         state = log['made:state']
         # robosuite's table scenes have the robot's base there
         self.near(state[:3], [robot[0][0] - 0.66, robot[0][1], robot[0][2] + 0.912], 1e-9)
         self.near([abs(x) for x in state[3:6]], [math.pi, 0, 0], 1e-3)  # the tool looks down
+        self.near(state[6:], [0.04, -0.04], 1e-3)  # open
         self.assertEqual(log['made:image_mask:right_wrist_0_rgb'], False)
         for frame, action in enumerate(actions):  # 0.1 of 0.05 m from where the hand is
             self.near(action[:3], [robot[frame][0], robot[frame][1] + 0.005, robot[frame][2]], 1e-8)
+            self.assertEqual(action[7], 1)  # closed
         self.assertGreater(robot[-1][1], robot[0][1] + 0.02)
 
     def test_droid_takes_our_joints_and_moves_them(self):
@@ -122,6 +134,7 @@ class PolicyAdapterTest(unittest.TestCase):
 
     def test_pictures_are_resized_as_openpi_does(self):
         """With the task's own size, by openpi's own client code."""
+        self.with_finger()
         _, _, log = self.rollout('libero')
         adapter = json.loads(pathlib.Path(f'{ADAPTERS}/openpi_libero.json').read_text())
         for field in adapter['request'].values():
@@ -150,13 +163,14 @@ async def main():
 asyncio.run(main())'''
         with subprocess.Popen([PYTHON, '-c', code], stdout=subprocess.PIPE, text=True) as server:
             address = f'ws://127.0.0.1:{int(server.stdout.readline())}'
-            subprocess.run([PHYSPRING, 'rollout', self.task, '--policy', address,
-                            '--policy-adapter', adapter], capture_output=True)
-            picture = json.loads(server.stdout.readline())
+            with subprocess.Popen([PHYSPRING, 'rollout', self.task, '--policy', address,
+                                   '--policy-adapter', adapter], stderr=subprocess.DEVNULL):
+                picture = json.loads(server.stdout.readline())
             server.kill()
         return picture
 
     def test_another_adapter_is_another_sweep(self):
+        self.with_finger()
         self.rollout('libero')
         other = self.folder / 'other.json'
         other.write_text(json.dumps({'request': {}, 'action': ['robot']}))
