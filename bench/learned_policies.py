@@ -24,8 +24,8 @@ import physpring
 import physpring.lerobot
 
 TASKS = {  # iterations of the snapshots
-    'rope_routing': (100, 200, 300, 500, 1000, 3000),
-    'cloth_folding': (200, 400, 700, 1200, 2000, 4000),
+    'rope_routing': (200, 400, 700, 1200, 2400),
+    'cloth_folding': (100, 200, 350, 600, 1500),
 }
 LEVELS = '0,1,2,3'
 DEMOS, DEMO_SEED, SEED = 100, 100, 1

@@ -46,7 +46,7 @@ double InUse() {
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-void Step(benchmark::State& state) {
+void StepScenes(benchmark::State& state) {
   const auto count = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
   Model();
   const double before = InUse();
@@ -68,9 +68,9 @@ void Step(benchmark::State& state) {
 }  // namespace physpring
 
 int main(int argc, char** argv) {
-  using physpring::Step;
+  using physpring::StepScenes;
   physpring::LoadPluginLibrary(PHYSPRING_PLUGIN);
-  benchmark::RegisterBenchmark("scenes", Step)
+  benchmark::RegisterBenchmark("scenes", StepScenes)
       ->ArgNames({"count", "threads"})
       ->ArgsProduct({{1, 16, 64, 256}, {1, 2}})
       ->UseRealTime()
