@@ -64,6 +64,12 @@ def _dataset_class() -> Any:
     return LeRobotDataset
 
 
+def _be_quiet() -> None:
+    """No bar of progress for each episode."""
+    import datasets  # type: ignore[import-not-found]
+    datasets.disable_progress_bars()
+
+
 def some_particles(particles: np.ndarray, count: int) -> np.ndarray:
     """(3 count,): `count` of (N, 3), evenly spaced by their numbers, as the part `particles` of a
     policy adapter has them; all for 0."""
@@ -193,6 +199,7 @@ def _write(dataset_class: Any, draft: pathlib.Path, wish: _Wish, env: Any, episo
     action = env.action_space.sample().astype(np.float32)
     example = {**_look(wish, seen), 'action': action, 'next.reward': np.zeros(1, np.float32),
                'next.success': np.zeros(1, bool), 'next.done': np.zeros(1, bool)}
+    _be_quiet()
     dataset = dataset_class.create('physpring/' + pathlib.Path(wish.task).name,
                                    fps=int(env._setting.task.rate), root=draft,
                                    features=_features(wish, example), robot_type='physpring',

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from physpring import _core
-from physpring._mujoco import scenes, task_folder
+from physpring._mujoco import adapter_file, scenes, task_folder
 from physpring._recordings import RecordingLike, number, recordings_of, seed_of, threads_of, whole
 from physpring._training import train
 from physpring._warnings import PhyspringWarning
@@ -67,7 +67,8 @@ def sweep(task: str | os.PathLike,
 
     task: one of physpring.envs ('rope_routing'), or a folder, which workers on other machines must
         have at the same path. policy: 'scripted', 'random', 'replay:PATH' or 'ws://HOST:PORT'.
-    policy_adapter: file for a 'ws://' policy, as of `physpring rollout --policy-adapter`.
+    policy_adapter: for a 'ws://' policy: one of this package ('lerobot_state', 'openpi_libero', ...),
+        or a file, as of `physpring rollout --policy-adapter`.
     executor: any concurrent.futures.Executor, as that of a Dask client (client.get_executor()) or of
         Ray; physpring must be installed on the workers. None: processes of this machine, `workers`
         of them (None: all cores). An episode whose worker is lost is run again, on those that are
@@ -87,7 +88,7 @@ def sweep(task: str | os.PathLike,
     if len(set(levels)) != len(levels) or not levels:
         raise _core.Error(f'levels is {levels}, expected different ones')
     job = {'task': os.fspath(task_folder(task).resolve()), 'policy': policy, 'levels': levels,
-           'policy_adapter': os.path.abspath(policy_adapter) if policy_adapter else '',
+           'policy_adapter': adapter_file(policy_adapter),
            'seed': seed, 'action_noise': action_noise, 'start_noise': start_noise, 'states': states}
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary if output is None else output)

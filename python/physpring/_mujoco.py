@@ -14,6 +14,7 @@ from physpring._program import mujoco_library
 
 PLUGIN = pathlib.Path(__file__).parent / 'plugin' / 'libphyspring_plugin.so'
 TASKS = pathlib.Path(__file__).parent / 'tasks'
+ADAPTERS = pathlib.Path(__file__).parent / 'adapters'
 OBJECTS = pathlib.Path(__file__).parent / 'objects'
 
 
@@ -42,3 +43,16 @@ def task_folder(task: str | os.PathLike) -> pathlib.Path:
         known = ', '.join(sorted(one.parent.name for one in TASKS.glob('*/task.json')))
         raise _core.Error(f'{task}: is no folder with a task.json, nor one of {known}')
     return folder
+
+
+def adapter_file(adapter: str | os.PathLike) -> str:
+    """The path of a policy adapter: one of this package ('lerobot_state'), or your own file; '' for
+    none."""
+    if not os.fspath(adapter):
+        return ''
+    own = pathlib.Path(adapter)
+    path = own if own.exists() else ADAPTERS / f'{own}.json'
+    if not path.exists():
+        known = ', '.join(sorted(one.stem for one in ADAPTERS.glob('*.json')))
+        raise _core.Error(f'{adapter}: is no file, nor one of {known}')
+    return str(path.resolve())

@@ -23,7 +23,7 @@ from gymnasium.vector.utils import batch_space, concatenate, create_empty_array
 from numpy.typing import NDArray
 
 from physpring import _core
-from physpring._mujoco import scenes, task_folder
+from physpring._mujoco import adapter_file, scenes, task_folder
 from physpring._recordings import number, seed_of, threads_of, whole
 from physpring._simulation import _doubles
 
@@ -201,8 +201,9 @@ class TaskEnv(gymnasium.Env):
     def policy_action(self, policy: str = 'scripted',
                       policy_adapter: str | os.PathLike = '') -> NDArray[np.float64]:
         """What a policy of `physpring rollout` does now: 'scripted' (the task's own), 'random',
-        'replay:PATH', or 'ws://HOST:PORT', spoken to by the file `policy_adapter`."""
-        return self._scene.act(policy, os.fspath(policy_adapter))
+        'replay:PATH', or 'ws://HOST:PORT', spoken to by `policy_adapter` (as in
+        physpring.sweep)."""
+        return self._scene.act(policy, adapter_file(policy_adapter))
 
     def render(self) -> Any:
         if self.render_mode is None:

@@ -3,7 +3,7 @@
 
 openpi_server.py BEHAVIOUR LOG.npz [PORT]   prints its port, then serves until it is killed
 
-BEHAVIOUR: good (chunks of 7 actions that push), pings (a chunk of 200 actions, then a ping; each pong is a line of LOG.npz.pongs),
+BEHAVIOUR: good (chunks of 7 actions that push), late (the same, each after 50 ms), pings (a chunk of 200 actions, then a ping; each pong is a line of LOG.npz.pongs),
 silent (no answer), nan, shape (7 numbers), text (an error, as openpi tells it, then closes), dead
 (closes), reason (closes with one), garbage (no msgpack). The first request is kept in LOG.npz.
 """
@@ -58,6 +58,8 @@ class Server:
         elif self.behaviour == 'garbage':
             await connection.send(b'\xc1\xc1')
         else:
+            if self.behaviour == 'late':
+                await asyncio.sleep(0.05)
             chunk = actions(request['state'], self.behaviour)
             await connection.send(packer.pack({'actions': chunk, 'server_timing': {'infer_ms': 1.0}}))
             if self.behaviour == 'pings':  # the client needs nothing more, but is still there

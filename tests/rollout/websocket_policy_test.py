@@ -3,12 +3,15 @@
 
 websocket_policy_test.py PHYSPRING MAKE_SMALL_TASK ENVIRONMENT
 """
+import itertools
 import json
 import pathlib
+import signal
 import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -33,6 +36,34 @@ class Server:
         self.process.kill()
         self.process.wait()
         self.process.stdout.close()
+
+
+class Restarted:
+    """A server that is killed, or stops answering for a second, every 0.7 s, and comes up again."""
+
+    def __init__(self, arguments):
+        self.command = [PYTHON, HERE / 'openpi_server.py', *arguments]
+        self.ended = threading.Event()
+        self.thread = threading.Thread(target=self.run)
+
+    def __enter__(self):
+        self.thread.start()
+
+    def __exit__(self, *_):
+        self.ended.set()
+        self.thread.join()
+
+    def run(self):
+        for turn in itertools.count():
+            with subprocess.Popen(self.command, stdout=subprocess.PIPE) as server:
+                server.stdout.readline()
+                self.ended.wait(0.7)
+                if turn % 2 == 1:
+                    server.send_signal(signal.SIGSTOP)
+                    self.ended.wait(1)
+                server.kill()
+            if self.ended.is_set():
+                return
 
 
 class WebsocketPolicyTest(unittest.TestCase):
@@ -133,6 +164,29 @@ class WebsocketPolicyTest(unittest.TestCase):
             self.assertIsNone(early.poll())
             with Server('good', self.log, str(port)):
                 self.assertEqual(early.wait(timeout=60), 0, early.stderr.read())
+
+    def test_a_server_that_dies_hangs_and_restarts_costs_no_verdict(self):
+        """30 episodes, the same command again and again: the files are those of an undisturbed run."""
+        port, out, calm = str(free_port()), self.folder / 'out', self.folder / 'calm'
+        options = ['--episodes', '30', '--patience', '0.5', '--first-patience', '0.5',
+                   '--server-wait', '20']
+        address = f'ws://127.0.0.1:{port}'
+        failures = 0
+        with Restarted(['late', self.log, port]):
+            while True:
+                result, _ = self.run_program(address, '-o', out, *options)
+                if result.returncode == 0:
+                    break
+                failures += 1
+                self.assertIn('is not judged, what was finished is kept', result.stderr)
+                self.assertLess(failures, 100)
+        self.assertGreater(failures, 3)
+        with Server('good', self.log, port):
+            self.rollout(address, '-o', calm, '--episodes', '30')
+        for path in sorted(calm.glob('level0/episode_?????.*')):
+            if not path.name.endswith('.seconds.json'):
+                self.assertEqual((out / 'level0' / path.name).read_bytes(), path.read_bytes())
+        self.assertEqual(len(list(out.glob('level0/episode_?????.json'))), 30)
 
     def test_pings_are_answered_while_a_chunk_runs(self):
         with Server('pings', self.log) as address:

@@ -144,7 +144,7 @@ void BindScene(nb::module_& module) {
         }
         return CopyOf(action);
       },
-      nb::arg("policy"), nb::arg("policy_adapter"));
+      nb::arg("policy"), nb::arg("policy_adapter") = "");
   scene.def_prop_ro("sensors", [](const Class& self) {
     nb::dict sensors;
     for (const auto& [name, reading] : Idle(self).episode().observation().sensors) {
