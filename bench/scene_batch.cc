@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes of one task side by side in one process, as TaskVectorEnv steps them: frames a second with
 // one thread and with two, at level 3 of rope routing. Counters: frames_per_second, and
-// kib_per_scene, by how much the process grows for each scene. scene_batch [--benchmark_...]
+// kib_per_scene, by how much the process has grown for each scene. scene_batch [--benchmark_...]
 #include <benchmark/benchmark.h>
-#include <malloc.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <memory>
 #include <vector>
 
 #include "rollout/plugin_library.h"
 #include "rollout/stepped_episode.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {
@@ -40,10 +41,11 @@ struct Scene {
   }
 };
 
-// Bytes that are in use by what malloc gave.
+// Bytes of memory that the process takes.
 double InUse() {
-  const struct mallinfo2 info = mallinfo2();
-  return static_cast<double>(info.uordblks + info.hblkhd);
+  double pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 void StepScenes(benchmark::State& state) {
@@ -52,12 +54,12 @@ void StepScenes(benchmark::State& state) {
   const double before = InUse();
   std::vector<std::unique_ptr<Scene>> scenes(static_cast<std::size_t>(count));
   ParallelFor(count, 2, [&](int i) { scenes[i] = std::make_unique<Scene>(i); });
-  const double grown = InUse() - before;
   for (auto _ : state) {
     for (int frame = 0; frame < kFrames; ++frame) {
       ParallelFor(count, threads, [&](int i) { scenes[i]->episode->Step(scenes[i]->action); });
     }
   }
+  const double grown = InUse() - before;
   state.counters["frames_per_second"] = benchmark::Counter(
       static_cast<double>(count) * kFrames * static_cast<double>(state.iterations()),
       benchmark::Counter::kIsRate);

@@ -18,7 +18,7 @@
 #include "report/eval_report.h"
 #include "report/evaluation.h"
 #include "report/picture/page.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/atomic_file.h"
 #include "twin/clock_offset.h"
 #include "twin/dataset.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "trainer/solvers/levenberg_marquardt.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -9,7 +9,7 @@
 #include "trainer/bodies/start_system.h"
 #include "trainer/motion/observer.h"
 #include "trainer/solvers/levenberg_marquardt.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/stability.h"
 
 namespace physpring {

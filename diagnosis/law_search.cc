@@ -11,7 +11,7 @@
 #include "diagnosis/halving.h"
 #include "diagnosis/law_term.h"
 #include "trainer/solvers/levenberg_marquardt.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -11,7 +11,7 @@
 #include "python/bindings/watched_work.h"
 #include "report/eval_report.h"
 #include "report/picture/page.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/error.h"
 #include "twin/regrasp.h"
 

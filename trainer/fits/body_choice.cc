@@ -13,7 +13,7 @@
 #include "trainer/data/held_back.h"
 #include "trainer/motion/observer.h"
 #include "trainer/motion/track_error.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/error.h"
 
 namespace physpring {

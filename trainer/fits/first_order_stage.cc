@@ -8,7 +8,7 @@
 
 #include "trainer/bodies/phystwin_variables.h"
 #include "trainer/motion/frame_walk.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "trainer/fits/free_motion_error.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "trainer/fits/free_motion_error.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -15,7 +15,7 @@
 #include "trainer/network/corrections_fit.h"
 #include "trainer/network/level_network.h"
 #include "trainer/solvers/levenberg_marquardt.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/error.h"
 
 namespace physpring {

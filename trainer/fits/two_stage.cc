@@ -11,7 +11,7 @@
 #include "trainer/motion/loss.h"
 #include "trainer/motion/rollout.h"
 #include "trainer/solvers/cma_es.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "trainer/motion/lane_rollout.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/hierarchy.h"
 #include "twin/lane_simulator.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 

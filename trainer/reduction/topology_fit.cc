@@ -13,7 +13,7 @@
 #include "trainer/network/level_network.h"
 #include "trainer/projection/galerkin.h"
 #include "trainer/solvers/adam.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

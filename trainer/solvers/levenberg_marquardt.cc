@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -8,7 +8,7 @@
 #include "python/bindings/scenes/task_scene.h"
 #include "python/bindings/watched_work.h"
 #include "rollout/picture_size.h"
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 #include "twin/error.h"
 
 namespace physpring {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef PHYSPRING_TRAINER_SOLVERS_PARALLEL_H_
-#define PHYSPRING_TRAINER_SOLVERS_PARALLEL_H_
+#ifndef PHYSPRING_TWIN_PARALLEL_H_
+#define PHYSPRING_TWIN_PARALLEL_H_
 
 #include <functional>
 #include <vector>
@@ -20,4 +20,4 @@ void ParallelShared(int count, int threads,
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_TRAINER_SOLVERS_PARALLEL_H_
+#endif  // PHYSPRING_TWIN_PARALLEL_H_

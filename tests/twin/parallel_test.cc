@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trainer/solvers/parallel.h"
+#include "twin/parallel.h"
 
 #include <gtest/gtest.h>
 
