@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Puts an xArm7 into tasks: xarm7_scenes.py SCENES ROBOSUITE OUTPUT
+"""Puts an xArm7 into tasks: xarm7_scenes.py SCENES ROBOSUITE OUTPUT [--joints]
 
 SCENES is models/scenes, ROBOSUITE what scripts/xarm7 keeps of the package, OUTPUT gets a folder for
 each task. The arm's flange carries the hand of the task's scene, in place of its free joint, so the
 weld to the mocap body `target` moves the arm, and task.json stays as it is. What touches the object
 is the hand's as well: the pads of the floating gripper, on slides. The arm's own linkage only
 follows them, by joint equalities: its fingers are coarse boxes in MuJoCo that nodes slip past.
+
+With --joints, servos in the arm's joints move it instead of the weld: an action is seven angles and
+the fingers' control. The scripted policies, which move the hand, cannot drive these tasks.
 """
 import argparse
 import copy
@@ -22,6 +25,16 @@ START = (0, -11, 0, 46, 0, 57, 0)
 TARGET = '0.40108 0 0.19709'
 # m, from the flange to between the pads
 HAND = 0.149
+# m: the shoulder's height; from there to the elbow and on to the wrist, along and across; from the
+# wrist to the flange
+SHOULDER = 0.267
+UPPER, FORE, WRIST = (0.293, 0.0525), (0.3425, 0.0775), (0.097, 0.076)
+ARM = tuple(f'xarm7_joint{i}' for i in range(1, 8))
+# Of the servos in joint1 to joint7, N m/rad. All lag by the same time (s), so the hand keeps to its
+# path; with less they overshoot, as the torque of robosuite's motors (N m) has its limit.
+STIFFNESS = (8000, 8000, 6000, 6000, 2000, 2000, 2000)
+LAG = 0.05
+TORQUE = 80
 # The gripper's driver (rad) of the pads' slide (m), so that finger and pad face move alike: from
 # the linkage's lengths, fitted to 1e-4 rad.
 DRIVER = '0.101962491 21.9235965 -143.803046 2295.29934 -11970.7935'
@@ -33,6 +46,21 @@ def times(a, b):
             a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
             a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
             a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0])
+
+
+def angles_down(x, y, z, yaw):
+    """The angles (rad) of joint1 to joint7 for a hand at x, y, z (m) that points down, turned by
+    `yaw` (rad) about the vertical. The arm stays in a plane. Too far: a ValueError."""
+    turned = math.atan2(y, x)
+    reach = math.hypot(x, y) - WRIST[1]
+    rise = z + HAND + WRIST[0] - SHOULDER
+    upper, fore, whole = math.hypot(*UPPER), math.hypot(*FORE), math.hypot(reach, rise)
+    # of the triangle shoulder, elbow, wrist: the angles at the first two
+    shoulder = math.acos((upper**2 + whole**2 - fore**2) / (2 * upper * whole))
+    elbow = math.acos((upper**2 + fore**2 - whole**2) / (2 * upper * fore))
+    lean = math.pi / 2 - math.atan2(rise, reach) - shoulder - math.atan2(UPPER[1], UPPER[0])
+    bend = elbow - math.atan2(UPPER[1], UPPER[0]) - math.atan2(FORE[1], FORE[0])  # 0: folded
+    return (turned, lean, 0, bend, 0, bend - lean, turned - yaw)
 
 
 def only_seen(body):
@@ -64,24 +92,30 @@ def meshes(root, folder, prefix):
     return asset
 
 
-def read_arm(folder):
-    """Assets, the arm's base at its start, and its flange, to hang something on."""
+def read_arm(folder, start, servos):
+    """Assets, the arm's base at its start (degrees), and its flange, to hang something on. With
+    servos its joints keep their range."""
     root = ET.parse(folder / 'robot.xml').getroot()
     asset = meshes(root, folder, 'xarm7_')
     base = root.find("worldbody/body[@name='base']")
     flange = base.find(".//body[@name='link7']")
     flange.remove(flange.find("body[@name='right_hand']"))
     only_seen(base)
-    for angle, joint in zip(START, base.iter('joint')):
+    for angle, joint in zip(start, base.iter('joint')):
         body = next(b for b in base.iter('body') if joint in list(b))
         quaternion = [float(x) for x in body.get('quat', '1 0 0 0').split()]
         half = math.radians(angle) / 2
         turned = times(quaternion, (math.cos(half), 0, 0, math.sin(half)))
         body.set('quat', ' '.join(repr(x) for x in turned))
-        # the weld leaves the elbow free to swing: damped, and drawn to the arm's plane
-        elbow = {'stiffness': '5', 'springref': '0'} if joint.get('name') == 'joint3' else {}
+        if servos:
+            limits = (math.degrees(float(x)) for x in joint.get('range').split())
+            own = {'range': ' '.join(repr(x) for x in limits), 'armature': '0.1'}
+        else:  # the weld leaves the elbow free to swing: damped, and drawn to the arm's plane
+            own = {'damping': '1', 'armature': '0.05'}
+            if joint.get('name') == 'joint3':
+                own.update(stiffness='5', springref='0')
         joint.attrib = {'name': 'xarm7_' + joint.get('name'), 'axis': joint.get('axis'),
-                        'ref': str(angle), 'damping': '1', 'armature': '0.05', **elbow}
+                        'ref': str(angle), **own}
     for body in base.iter('body'):
         body.set('name', 'xarm7_' + body.get('name'))
     return asset, base, flange
@@ -116,13 +150,27 @@ def read_gripper(folder):
     return asset, gripper, equality
 
 
-def with_arm(model, robosuite):
-    """Puts the arm into a model with the bodies `target` and `hand`."""
+def add_servos(model):
+    """Servos in the arm's joints, in place of the weld to the mocap body."""
+    world = next(w for w in model.iter('worldbody') if w.find("body[@name='target']") is not None)
+    world.remove(world.find("body[@name='target']"))
+    equality = model.find('equality')
+    equality.remove(equality.find("weld[@name='hand']"))
+    actuator = model.find('actuator')
+    if actuator is None:
+        actuator = ET.SubElement(model, 'actuator')
+    for name, kp in zip(ARM, STIFFNESS):
+        ET.SubElement(actuator, 'position', name=name, joint=name, kp=str(kp), kv=str(LAG * kp),
+                      inheritrange='1', forcerange=f'{-TORQUE} {TORQUE}')
+
+
+def with_arm(model, robosuite, start=START, servos=False):
+    """Puts the arm, at its start (degrees), into a model with the bodies `target` and `hand`."""
     world = next(w for w in model.iter('worldbody') if w.find("body[@name='hand']") is not None)
     hand = world.find("body[@name='hand']")
     world.remove(hand)
     world.find("body[@name='target']").set('pos', TARGET)
-    asset, base, flange = read_arm(robosuite / 'arm')
+    asset, base, flange = read_arm(robosuite / 'arm', start, servos)
     model.append(asset)
     hand.remove(hand.find('freejoint'))
     hand.set('pos', f'0 0 {HAND}')
@@ -139,8 +187,10 @@ def with_arm(model, robosuite):
         hand.append(gripper)
     flange.append(hand)
     world.append(base)
-    weld = model.find("equality/weld[@name='hand']")
-    weld.set('relpose', '0 0 0 1 0 0 0')
+    if servos:
+        add_servos(model)
+    else:
+        model.find("equality/weld[@name='hand']").set('relpose', '0 0 0 1 0 0 0')
 
 
 def write(model, path):
@@ -148,7 +198,22 @@ def write(model, path):
     ET.ElementTree(model).write(path, encoding='unicode')
 
 
-def make_task(task, robosuite, folder):
+def drive_joints(settings):
+    """Makes the robot of a task.json one that is driven by joints. Its home stays the same pose."""
+    robot = settings['robot']
+    x, y, z, qw, _, _, qz, gripper = robot['home']
+    fingers, opened, closed = (robot.get(key, []) for key in ('actuators', 'open', 'closed'))
+    at_home = [a + gripper * (b - a) for a, b in zip(opened, closed)]
+    settings['robot'] = {'kind': 'joints', 'hand': robot['hand'], 'actuators': [*ARM, *fingers]}
+    if fingers:
+        settings['robot'].update(fingers=len(fingers), open=opened, closed=closed)
+    angles = angles_down(x, y, z, 2 * math.atan2(qz, qw))
+    settings['robot']['home'] = [*angles, *at_home]
+    del settings['policy']
+    return [math.degrees(angle) for angle in angles]
+
+
+def make_task(task, robosuite, folder, joints):
     """The folder of a task with an arm; twin and levels stay where they are."""
     folder.mkdir(parents=True, exist_ok=True)
 
@@ -163,13 +228,16 @@ def make_task(task, robosuite, folder):
         if included.name == 'gripper.xml':
             with_hand = ET.parse(included).getroot()
             include.set('file', 'gripper.xml')
-    with_arm(with_hand, robosuite)
+    settings = json.loads((task / 'task.json').read_text())
+    if joints:
+        with_arm(with_hand, robosuite, drive_joints(settings), servos=True)
+    else:
+        with_arm(with_hand, robosuite)
     for mesh in with_hand.iter('mesh'):
         mesh.set('file', str(from_folder(mesh.get('file'))))
     if with_hand is not scene:
         write(with_hand, folder / 'gripper.xml')
     write(scene, folder / 'scene.xml')
-    settings = json.loads((task / 'task.json').read_text())
     settings['twin'] = str(from_folder(task / settings['twin']))
     settings['levels'] = [str(from_folder(task / level)) for level in settings['levels']]
     (folder / 'task.json').write_text(json.dumps(settings, indent=2) + '\n')
@@ -179,10 +247,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     for name in ('scenes', 'robosuite', 'output'):
         parser.add_argument(name, type=pathlib.Path)
+    parser.add_argument('--joints', action='store_true', help='servos in the joints, no weld')
     arguments = parser.parse_args()
     for settings in sorted(arguments.scenes.glob('*/task.json')):
         task = settings.parent
-        make_task(task, arguments.robosuite, arguments.output / task.name)
+        make_task(task, arguments.robosuite, arguments.output / task.name, arguments.joints)
         print(arguments.output / task.name)
 
 
