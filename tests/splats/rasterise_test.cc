@@ -7,11 +7,10 @@
 
 #include <algorithm>
 #include <numeric>
-#include <random>
 
 #include "splats/harmonics.h"
 #include "splats/tile.h"
-#include "twin/uniform.h"
+#include "tests/splats/random_splats.h"
 
 namespace physpring {
 namespace {
@@ -24,26 +23,6 @@ PinholeCamera Camera(int width, int height) {
   camera.cx = 0.5 * width + 1.5;
   camera.cy = 0.5 * height - 2;
   return camera;
-}
-
-Splats RandomSplats(int count, int degree, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto between = [&](double from, double to) {
-    return static_cast<float>(from + (to - from) * Uniform(&random));
-  };
-  Splats splats;
-  splats.degree = degree;
-  splats.position.resize(3, count);
-  splats.log_scale.resize(3, count);
-  splats.rotation.resize(4, count);
-  splats.logit.resize(count);
-  splats.harmonics.resize(3 * HarmonicCount(degree), count);
-  for (float& x : splats.position.reshaped()) x = between(-0.6, 0.6);
-  for (float& x : splats.log_scale.reshaped()) x = between(-5, -2.5);
-  for (float& x : splats.rotation.reshaped()) x = between(-1, 1);
-  for (float& x : splats.logit) x = between(-4, 5);
-  for (float& x : splats.harmonics.reshaped()) x = between(-0.6, 0.6);
-  return splats;
 }
 
 // One splat as a camera sees it, in double.
