@@ -21,6 +21,7 @@ void AddInfoCommand(CLI::App& app);
 void AddInteriorCommand(CLI::App& app);
 void AddRegisterCommand(CLI::App& app);
 void AddSplitCommand(CLI::App& app);
+void AddSplatsCommand(CLI::App& app);
 void AddDoctorCommand(CLI::App& app);
 
 }  // namespace physpring

@@ -69,11 +69,8 @@ class Projector {
   }
 
   bool Shape(int i, const Vector& t, Ellipse* ellipse) const {
-    const auto s = splats_.covariance.col(i);
-    Matrix covariance;
-    covariance << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
     const Eigen::Matrix<float, 2, 3> m = Derivative(t) * axes_;
-    const Eigen::Matrix<float, 2, 3> mc = m * covariance;
+    const Eigen::Matrix<float, 2, 3> mc = m * splats_.Covariance(i);
     const float xx = mc.row(0).dot(m.row(0)) + kBlur, yy = mc.row(1).dot(m.row(1)) + kBlur;
     const float xy = mc.row(0).dot(m.row(1));
     const float determinant = xx * yy - xy * xy;

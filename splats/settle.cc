@@ -45,10 +45,7 @@ Splats Settle(const PlacedSplats& placed) {
   Splats splats = *placed.look;
   splats.position = placed.position;
   for (int i = 0; i < splats.count(); ++i) {
-    const auto s = placed.covariance.col(i);
-    Eigen::Matrix3f covariance;
-    covariance << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> own(covariance);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> own(placed.Covariance(i));
     Eigen::Matrix3f axes = own.eigenvectors();
     if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
     const Eigen::Quaternionf q(axes);

@@ -19,12 +19,6 @@ constexpr double kRigid = 0.05;      // e
 constexpr double kNear = 1e-6;       // m: keeps the weight of a node that is a splat finite
 constexpr int kSplatsAtOnce = 2048;  // splats that a thread takes at once
 
-Matrix Full(const Eigen::Matrix<float, 6, 1>& s) {
-  Matrix full;
-  full << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  return full;
-}
-
 }  // namespace
 
 SplatMotion::SplatMotion(const Splats& splats, const Points& nodes)
@@ -96,8 +90,7 @@ PlacedSplats SplatMotion::At(const Points& nodes, int threads) const {
         f += anchor.weight * own;
       }
       placed.position.col(i) = x;
-      const Matrix s = f * Full(start_.covariance.col(i)) * f.transpose();
-      placed.covariance.col(i) << s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2);
+      placed.SetCovariance(i, f * start_.Covariance(i) * f.transpose());
       placed.turn.col(i) = rotations[anchors_[i][0].node].reshaped();
     }
   });

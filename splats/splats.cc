@@ -3,6 +3,13 @@
 
 namespace physpring {
 
+Eigen::Matrix3f PlacedSplats::Covariance(int i) const {
+  const auto s = covariance.col(i);
+  Eigen::Matrix3f full;
+  full << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  return full;
+}
+
 PlacedSplats AsStored(const Splats& splats) {
   PlacedSplats placed{&splats, splats.position, {}, {}};
   placed.covariance.resize(6, splats.count());
@@ -11,8 +18,7 @@ PlacedSplats AsStored(const Splats& splats) {
     const Eigen::Matrix3f axes = Eigen::Quaternionf(q[0], q[1], q[2], q[3]).toRotationMatrix();
     const Eigen::Matrix3f scaled =
         axes * splats.log_scale.col(i).array().exp().matrix().asDiagonal();
-    const Eigen::Matrix3f s = scaled * scaled.transpose();
-    placed.covariance.col(i) << s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2);
+    placed.SetCovariance(i, scaled * scaled.transpose());
   }
   return placed;
 }

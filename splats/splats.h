@@ -35,6 +35,11 @@ struct PlacedSplats {
   // From the axes of `look` to the present ones, column by column; none: not turned. Colours are
   // those of the direction that is turned back.
   Eigen::Matrix<float, 9, Eigen::Dynamic> turn;
+
+  Eigen::Matrix3f Covariance(int i) const;
+  void SetCovariance(int i, const Eigen::Matrix3f& s) {
+    covariance.col(i) << s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2);
+  }
 };
 
 // As they are stored: S = R diag(exp(2 log_scale)) R^T.

@@ -6,6 +6,7 @@ import json
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
@@ -17,6 +18,13 @@ BOX = ''.join(f'v {x} {y} {z}\n' for x in (-0.205, 0.221) for y in (-0.012, 0.01
 f 1 2 4\nf 1 4 3\nf 5 7 8\nf 5 8 6\nf 1 5 6\nf 1 6 2\nf 3 4 8\nf 3 8 7\nf 1 3 7\nf 1 7 5\nf 2 6 8
 f 2 8 4
 '''
+
+
+# a file with one splat
+NAMES = 'x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3'.split()
+SPLAT = ('ply\nformat binary_little_endian 1.0\nelement vertex 1\n' +
+         ''.join(f'property float {name}\n' for name in NAMES) + 'end_header\n').encode()
+SPLAT += struct.pack('<14f', *[0.0] * 7, *[-5.0] * 3, 1.0, *[0.0] * 3)
 
 
 class Case:
@@ -40,6 +48,7 @@ def make_inputs(folder, program, make_small_twin, make_small_task):
         subprocess.run([program, 'record', demo / f'{scene}.xml', '-o', folder / f'{scene}.npz',
                         '--duration', '0.3', '--fps', '50'], check=True, capture_output=True)
     (folder / 'box.obj').write_text(BOX)
+    (folder / 'one.ply').write_bytes(SPLAT)
     held = folder / "<b>held & 'back'.npz"
     held.rename(folder / 'held.npz')
     return folder
@@ -60,6 +69,8 @@ def cases(inputs):
         Case('register', ['register', inputs / 'clouds.npz', '--points', '12', '-o',
                           '{out}/followed.npz'], ['--force']),
         Case('split', ['split', inputs / 'two.npz', '-o', '{out}/parts'], ['--force']),
+        Case('splats', ['splats', inputs / 'small.twin.npz', inputs / 'one.ply', '--recording',
+                        inputs / 'swing.npz', '-o', '{out}/moved', '--every', '10'], ['--force']),
         Case('eval', ['eval', inputs / 'small.twin.npz', inputs / 'swing.npz', '--json',
                       '{out}/eval.json', '--picture', '{out}/eval.html', '--trajectory',
                       '{out}/motion.npz']),

@@ -28,7 +28,7 @@ DECISION_PARTS = ("Status", "Decision", "Against", "Measured")
 # Where pages of ours are, besides the root itself.
 FOLDERS = ("bench", "cli", "diagnosis", "docs", "exporter", "jobs", "models", "plugin", "python",
            "registration", "report", "tracker",
-           "rollout", "scripts", "tests", "third_party", "tools", "trainer", "twin")
+           "rollout", "scripts", "splats", "tests", "third_party", "tools", "trainer", "twin")
 
 FENCE = re.compile(r"^\s*(```|~~~)")
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?[^)]*\)")

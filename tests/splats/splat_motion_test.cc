@@ -20,21 +20,14 @@ Points Grid(int x, int y, int z, double gap) {
   return nodes.colwise() - nodes.rowwise().mean();
 }
 
-Eigen::Matrix3f Covariance(const PlacedSplats& placed, int i) {
-  const auto s = placed.covariance.col(i);
-  Eigen::Matrix3f full;
-  full << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  return full;
-}
-
 void ExpectMoved(const PlacedSplats& moved, const Splats& splats, const Eigen::Matrix3f& f,
                  const Eigen::Vector3f& shift, float tolerance) {
   const PlacedSplats start = AsStored(splats);
   for (int i = 0; i < splats.count(); ++i) {
     const Eigen::Vector3f x = f * splats.position.col(i) + shift;
     EXPECT_LT((moved.position.col(i) - x).norm(), tolerance) << i;
-    const Eigen::Matrix3f s = f * Covariance(start, i) * f.transpose();
-    EXPECT_LT((Covariance(moved, i) - s).norm(), tolerance * s.norm() * 10) << i;
+    const Eigen::Matrix3f s = f * start.Covariance(i) * f.transpose();
+    EXPECT_LT((moved.Covariance(i) - s).norm(), tolerance * s.norm() * 10) << i;
   }
 }
 
