@@ -60,6 +60,7 @@ class CameraThread : public Viewer {
       video_.emplace(options_.video, task_.width * static_cast<int>(shown_.size()), task_.height,
                      task_.rate);
     }
+    if (!task_.splats.file.empty()) splats_.emplace(model);
     std::promise<void> ready;
     std::future<void> outcome = ready.get_future();
     thread_ = std::thread([this, &ready] { Work(&ready); });
@@ -132,7 +133,8 @@ class CameraThread : public Viewer {
   void Work(std::promise<void>* ready) {
     bool told = false;
     try {
-      Painter painter(model_, options_.quality, task_.width, task_.height);
+      Painter painter(model_, options_.quality, task_.width, task_.height,
+                      splats_ ? &*splats_ : nullptr);
       const DataPtr data = MakeData(model_);
       ready->set_value();
       told = true;
@@ -190,6 +192,7 @@ class CameraThread : public Viewer {
   const Task& task_;
   const ModelPtr own_;  // with looks of its own; null: it is drawn as it is
   const mjModel& model_;
+  std::optional<SplatLayer> splats_;
   const CameraOptions options_;
   std::vector<mjvCamera> cameras_, shown_;
   std::optional<VideoFile> video_;  // the thread's until it has ended

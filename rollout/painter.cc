@@ -53,10 +53,12 @@ void PlaceForDrawing(const mjModel& model, mjData* data) {
   mj_tendon(&model, data);
 }
 
-Painter::Painter(const mjModel& model, PictureQuality quality, int width, int height)
-    : model_(model), width_(width), height_(height), off_screen_(width, height) {
+Painter::Painter(const mjModel& model, PictureQuality quality, int width, int height,
+                 const SplatLayer* splats)
+    : model_(model), splats_(splats), width_(width), height_(height), off_screen_(width, height) {
   constexpr int kSpare = 1000;  // geoms besides the model's own
   mjv_defaultOption(&option_);
+  if (splats_ != nullptr) option_.flags[mjVIS_SKIN] = 0;
   mjv_defaultScene(&scene_);
   mjr_defaultContext(&context_);
   mjv_makeScene(&model_, &scene_, model_.ngeom + 2 * model_.ntendon + model_.nsite + kSpare);
@@ -87,22 +89,32 @@ void Painter::Mark(const Points& marks) {
   }
 }
 
-Image Painter::Paint(mjData* data, const mjvCamera& camera, const Points& marks) {
+DrawnScene Painter::Draw(mjData* data, const mjvCamera& camera, const Points& marks) {
   mjvCamera view = camera;
   const mjrRect area{0, 0, width_, height_};
-  Image image{width_, height_, {}};
-  const std::size_t row = 3 * static_cast<std::size_t>(width_);
-  std::vector<unsigned char> upwards(row * static_cast<std::size_t>(height_));
+  const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
+  DrawnScene drawn{width_, height_, std::vector<unsigned char>(3 * pixels), {}, {}};
+  if (splats_ != nullptr) drawn.depth.resize(pixels);
   CatchMujoco([&] {
     mjv_updateScene(&model_, data, &option_, nullptr, &view, mjCAT_ALL, &scene_);
     Mark(marks);
     mjr_render(area, &scene_, &context_);
-    mjr_readPixels(upwards.data(), nullptr, area, &context_);
+    float* depth = splats_ != nullptr ? drawn.depth.data() : nullptr;
+    mjr_readPixels(drawn.rgb.data(), depth, area, &context_);
+    drawn.camera = mjv_averageCamera(&scene_.camera[0], &scene_.camera[1]);
   });
+  return drawn;
+}
+
+Image Painter::Paint(mjData* data, const mjvCamera& camera, const Points& marks) {
+  const DrawnScene drawn = Draw(data, camera, marks);
+  if (splats_ != nullptr) return splats_->Compose(drawn, *data);
   // OpenGL begins with the bottom row
-  image.rgb.reserve(upwards.size());
+  Image image{width_, height_, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(width_);
+  image.rgb.reserve(drawn.rgb.size());
   for (int y = height_ - 1; y >= 0; --y) {
-    const auto from = upwards.begin() + static_cast<std::ptrdiff_t>(row) * y;
+    const auto from = drawn.rgb.begin() + static_cast<std::ptrdiff_t>(row) * y;
     image.rgb.insert(image.rgb.end(), from, from + static_cast<std::ptrdiff_t>(row));
   }
   return image;

@@ -10,6 +10,7 @@
 
 #include "rollout/off_screen.h"
 #include "rollout/policy.h"
+#include "rollout/splat_layer.h"
 #include "twin/points.h"
 
 namespace physpring {
@@ -33,8 +34,10 @@ void PlaceForDrawing(const mjModel& model, mjData* data);
 
 class Painter {
  public:
-  // The model lives longer. Throws Error where OSMesa is missing.
-  Painter(const mjModel& model, PictureQuality quality, int width, int height);
+  // The model and the splats, which are drawn instead of skins (null: there are none), live longer.
+  // Throws Error where OSMesa is missing.
+  Painter(const mjModel& model, PictureQuality quality, int width, int height,
+          const SplatLayer* splats = nullptr);
   ~Painter();
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
@@ -45,8 +48,10 @@ class Painter {
 
  private:
   void Mark(const Points& marks);
+  DrawnScene Draw(mjData* data, const mjvCamera& camera, const Points& marks);
 
   const mjModel& model_;
+  const SplatLayer* splats_;
   int width_, height_;
   OffScreen off_screen_;
   mjvOption option_;

@@ -114,13 +114,7 @@ void Simulation::RunFrame(const Eigen::VectorXd& action) {
   mj_kinematics(&model, data_.get());
 }
 
-Points Simulation::Nodes() const {
-  Points local = model_.reference;
-  for (int i = 0; i < model_.node_count(); ++i) {
-    local.col(i) += Eigen::Map<const Eigen::Vector3d>(data_->qpos + model_.node_qpos[i]);
-  }
-  return model_.parent.ToWorld(local);
-}
+Points Simulation::Nodes() const { return model_.NodesIn(*data_); }
 
 Points Simulation::Particles() const { return lift_->Apply(Nodes()); }
 

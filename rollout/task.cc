@@ -168,6 +168,13 @@ void ReadCameras(const JsonFields& fields, Task* task) {
   task->height = static_cast<int>(size[1]);
 }
 
+SplatOptions ReadTaskSplats(const JsonFields& fields, const std::string& folder) {
+  fields.ExpectOnly({"file", "scale", "pose"});
+  const Pose pose = fields.Has("pose") ? ReadPose(fields.Object("pose")) : Pose{};
+  return {FileOf(fields, "file", folder, fields.Text("file")),
+          {PositiveNumberOr(fields, "scale", 1, 1e6), pose.orientation, pose.position}};
+}
+
 std::string NameOfFolder(const std::string& folder) {
   const std::filesystem::path path = std::filesystem::path(folder).lexically_normal();
   return (path.has_filename() ? path : path.parent_path()).filename().string();
@@ -185,8 +192,8 @@ Task ReadTask(const std::string& folder) {
   const std::string file = InFolder(folder, "task.json");
   const JsonFields fields = ReadJsonFile(file);
   fields.ExpectOnly({"prompt", "scene", "twin", "levels", "object", "rate", "settle", "frames",
-                     "robot", "starts", "success", "policy", "policy_adapter", "sensors", "cameras",
-                     "image"});
+                     "robot", "starts", "success", "policy", "policy_adapter", "sensors", "splats",
+                     "cameras", "image"});
   Task task;
   task.folder = folder;
   task.name = NameOfFolder(folder);
@@ -205,6 +212,7 @@ Task ReadTask(const std::string& folder) {
     task.policy_adapter = FileOf(fields, "policy_adapter", folder, fields.Text("policy_adapter"));
   }
   if (fields.Has("sensors")) task.sensors = fields.Texts("sensors");
+  if (fields.Has("splats")) task.splats = ReadTaskSplats(fields.Object("splats"), folder);
   ReadCameras(fields, &task);
   return task;
 }

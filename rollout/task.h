@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rollout/pose.h"
+#include "splats/placement.h"
 #include "twin/twin.h"
 
 namespace physpring {
@@ -54,6 +55,12 @@ struct SuccessOptions {
   std::string numbers = "{}";  // the rule's own, a JSON object
 };
 
+// What the object looks like, instead of its skin (splats/splats.h).
+struct SplatOptions {
+  std::string file;     // empty: none
+  Placement placement;  // from the file's frame to the twin's
+};
+
 struct Task {
   std::string name;
   std::string folder;
@@ -71,6 +78,7 @@ struct Task {
   std::string policy;                // the scripted policy, see policies/registry.h
   std::string policy_adapter;        // file, for policy servers; empty: plain
   std::vector<std::string> sensors;  // names in the scene, for policies that ask for them
+  SplatOptions splats;
   std::vector<std::string> cameras;  // names in the scene; the first one makes the video
   int width = 640, height = 480;     // pixels, of what cameras see
 };

@@ -123,6 +123,14 @@ std::string Numbers(const Pose& pose) {
 
 }  // namespace
 
+Points TaskModel::NodesIn(const mjData& data) const {
+  Points local = reference;
+  for (int i = 0; i < node_count(); ++i) {
+    local.col(i) += Eigen::Map<const Eigen::Vector3d>(data.qpos + node_qpos[i]);
+  }
+  return parent.ToWorld(local);
+}
+
 TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* warnings) {
   if (level < 0 || level >= static_cast<int>(task.levels.size())) {
     throw Error(

@@ -34,6 +34,8 @@ struct TaskModel {
   std::unique_ptr<const SuccessRule> success;
 
   int node_count() const { return static_cast<int>(node_qpos.size()); }
+  // Where the nodes are: 3 x nodes, m.
+  Points NodesIn(const mjData& data) const;
 };
 
 // The level's model is attached to the scene in a frame at `task.object`, after all that the scene

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splats in MuJoCo's pictures: before and behind what MuJoCo draws, by its depth buffer, so that
+// grippers hide them and they hide grippers. They move with the nodes of a task's object.
+#ifndef PHYSPRING_ROLLOUT_SPLAT_LAYER_H_
+#define PHYSPRING_ROLLOUT_SPLAT_LAYER_H_
+
+#include <mujoco/mujoco.h>
+
+#include <vector>
+
+#include "rollout/policy.h"
+#include "rollout/task_model.h"
+#include "splats/camera.h"
+#include "splats/splat_motion.h"
+
+namespace physpring {
+
+// What MuJoCo has drawn, as OpenGL gives it: the bottom row first.
+struct DrawnScene {
+  int width = 0, height = 0;
+  std::vector<unsigned char> rgb;
+  std::vector<float> depth;  // of the depth buffer, 0 near to 1 far
+  mjvGLCamera camera;        // that it was drawn with
+};
+
+class SplatLayer {
+ public:
+  // Reads the task's splats. The model lives longer. Throws Error, which begins with the file.
+  explicit SplatLayer(const TaskModel& model);
+  SplatLayer(const SplatLayer&) = delete;
+  SplatLayer& operator=(const SplatLayer&) = delete;
+
+  // Where something is drawn as the nodes of `data` have it.
+  Image Compose(const DrawnScene& scene, const mjData& data) const;
+
+ private:
+  const TaskModel& model_;
+  Splats splats_;
+  SplatMotion motion_;
+};
+
+// OpenGL's camera, as computer vision has it.
+PinholeCamera PinholeOf(const mjvGLCamera& camera, int width, int height);
+
+// Distance along the view [m] of a value of the depth buffer.
+float MetricDepth(float depth, const mjvGLCamera& camera);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_ROLLOUT_SPLAT_LAYER_H_
