@@ -117,12 +117,13 @@ def rollout_kept(task, folder, snapshot, out, arguments, *options):
     """`physpring rollout` of this environment against a server of the snapshot. The address is part
     of what a sweep is, so the port is always the same."""
     policy = physpring.lerobot.LeRobotPolicy(folder / 'act' / f'{snapshot:06d}')
-    with physpring.lerobot.PolicyServer(policy, port=arguments.port):
+    with (physpring.lerobot.PolicyServer(policy, port=arguments.port),
+          open(folder / 'rollout.log', 'a') as log):
         subprocess.run([pathlib.Path(sys.executable).parent / 'physpring', 'rollout', scene(task),
                         '--policy', f'ws://127.0.0.1:{arguments.port}/{snapshot}',
                         '--policy-adapter', ADAPTER, '--seed', str(SEED), '--threads', '2',
                         '--episodes', str(arguments.episodes), '--states', 'actions', '-o', out,
-                        *options], check=True, stderr=subprocess.DEVNULL)
+                        *options], check=True, stderr=log)
 
 
 def scene(task):

@@ -146,6 +146,10 @@ void ExpectSomeWithoutProblem(const std::vector<EpisodeSummary>& episodes) {
 }
 
 void Run(const RolloutArguments& arguments) {
+  const PolicyChoice& policy = arguments.sweep.policy;
+  if (!policy.adapter.empty() && !policy.text.starts_with("ws://")) {
+    throw Error("--policy-adapter is for a policy server (--policy ws://HOST:PORT)");
+  }
   ExpectMujoco();
   LoadPluginLibrary();
   const std::string folder = FolderOf(arguments.task);

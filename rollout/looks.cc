@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -21,11 +23,20 @@ class Draw {
 
   double Within(double most) { return most * (2 * Uniform(&random_) - 1); }
 
-  // `count` colours of four numbers, the last of which stays.
+  // `count` colours of four numbers, the last of which stays. What had one colour has one again.
   void Colours(float* rgba, int count) {
-    for (int i = 0; i < 4 * count; ++i) {
-      if (i % 4 == 3) continue;
-      rgba[i] = std::clamp(rgba[i] * static_cast<float>(1 + Within(kColour)), 0.0F, 1.0F);
+    for (int i = 0; i < count; ++i, rgba += 4) {
+      const std::array<float, 3> before = {rgba[0], rgba[1], rgba[2]};
+      const auto known = drawn_.find(before);
+      if (known != drawn_.end()) {
+        std::copy(known->second.begin(), known->second.end(), rgba);
+        continue;
+      }
+      for (int colour = 0; colour < 3; ++colour) {
+        const auto factor = static_cast<float>(1 + Within(kColour));
+        rgba[colour] = std::clamp(rgba[colour] * factor, 0.0F, 1.0F);
+      }
+      drawn_[before] = {rgba[0], rgba[1], rgba[2]};
     }
   }
 
@@ -51,6 +62,7 @@ class Draw {
 
  private:
   std::mt19937_64 random_;
+  std::map<std::array<float, 3>, std::array<float, 3>> drawn_;  // by the colour before
 };
 
 }  // namespace

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import shutil
+import threading
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -65,7 +66,8 @@ def _dataset_class() -> Any:
 
 
 def _be_quiet() -> None:
-    """No bar of progress for each episode."""
+    """No bar of progress for each episode, nor what the video encoder says of itself."""
+    os.environ.setdefault('SVT_LOG', '1')
     import datasets  # type: ignore[import-not-found]
     datasets.disable_progress_bars()
 
@@ -92,14 +94,17 @@ def _look(wish: _Wish, seen: dict[str, Any]) -> dict[str, Any]:
     return frame
 
 
-def _frames(wish: _Wish, episode: int) -> tuple[int, bool, list[dict[str, Any]]]:
-    """Number, verdict and frames of an episode."""
+def _frames(wish: _Wish, episode: int,
+            stop: threading.Event) -> tuple[int, bool, list[dict[str, Any]]]:
+    """Number, verdict and frames of an episode; `stop` ends it."""
     env = wish.env(episode)
     seen, _ = env.reset(seed=wish.seed, options={'episode': episode})
     frames: list[dict[str, Any]] = []
     over = False
     info: dict[str, Any] = {}
     while not over:
+        if stop.is_set():
+            raise _core.Error('stopped')
         action = env.policy_action(wish.policy)
         frame = _look(wish, seen)
         seen, reward, _, over, info = env.step(action)
@@ -151,7 +156,8 @@ def record(task: str | os.PathLike,
     samples: folder of `physpring export --samples N`; episodes take its twins in turn. Nothing is left in `folder` if it fails.
     """
     from physpring._mujoco import task_folder
-    dataset_class = _dataset_class()
+    if isinstance(cameras, str):
+        cameras = [cameras]
     if keep not in ('successes', 'all'):
         raise _core.Error(f"keep is {keep!r}, expected 'successes' or 'all'")
     whole('episodes', episodes, 1)
@@ -166,11 +172,13 @@ def record(task: str | os.PathLike,
                  number('start_noise', start_noise, 0, 1), bool(vary_looks), _folders(samples))
     env = wish.env()
     setting = env._setting.task
+    whole('particles', particles, -1, setting.particle_count)
     if setting.rate != int(setting.rate):
         raise _core.Error(f'{wish.task}: rate is {setting.rate} Hz; LeRobot takes whole numbers')
     for camera in cameras:
         if camera not in setting.cameras:
             raise _core.Error(f'cameras has {camera!r}, expected some of {setting.cameras}')
+    dataset_class = _dataset_class()  # takes seconds
     draft = root.with_name(root.name + '.part')
     shutil.rmtree(draft, ignore_errors=True)
     try:
@@ -206,15 +214,20 @@ def _write(dataset_class: Any, draft: pathlib.Path, wish: _Wish, env: Any, episo
                                    use_videos=bool(wish.cameras))
     kept: list[int] = []
     count = 0
+    stop = threading.Event()
     with concurrent.futures.ThreadPoolExecutor(threads) as pool:
-        for episode, success, frames in _in_order(pool, wish, episodes, threads):
-            if keep == 'successes' and not success:
-                continue
-            for frame in frames:
-                dataset.add_frame({**frame, 'task': env.prompt})
-            dataset.save_episode()
-            kept.append(episode)
-            count += len(frames)
+        try:
+            for episode, success, frames in _in_order(pool, wish, episodes, threads, stop):
+                if keep == 'successes' and not success:
+                    continue
+                for frame in frames:
+                    dataset.add_frame({**frame, 'task': env.prompt})
+                dataset.save_episode()
+                kept.append(episode)
+                count += len(frames)
+        finally:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
     if not kept:
         raise _core.Error(f'none of {episodes} episodes succeeded; nothing is written')
     dataset.finalize()
@@ -223,15 +236,30 @@ def _write(dataset_class: Any, draft: pathlib.Path, wish: _Wish, env: Any, episo
     return kept, count
 
 
-def _in_order(pool: Any, wish: _Wish, episodes: int, threads: int) -> Iterator[Any]:
+def _in_order(pool: Any, wish: _Wish, episodes: int, threads: int,
+              stop: threading.Event) -> Iterator[Any]:
     """Episodes by their numbers, a few of them ahead."""
     running: list[Any] = []
     for episode in range(episodes):
-        running.append(pool.submit(_frames, wish, episode))
+        running.append(pool.submit(_frames, wish, episode, stop))
         if len(running) > threads:
             yield running.pop(0).result()
     for one in running:
         yield one.result()
+
+
+def _recorded(root: pathlib.Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each frame: its episode, its action and whether the episode had succeeded."""
+    dataset_class = _dataset_class()
+    _be_quiet()
+    try:
+        table = dataset_class('physpring/replay', root=root).hf_dataset.with_format('numpy')
+        index = np.asarray(table['episode_index'][:])
+        actions = np.asarray(table['action'][:], float)
+        return index, actions, np.asarray(table['next.success'][:]).reshape(len(index))
+    except Exception as error:  # of many kinds, by what is damaged
+        first = (str(error).splitlines() or [type(error).__name__])[0]
+        raise _core.Error(f'{root}: is no data set that LeRobot reads: {first}') from error
 
 
 @dataclasses.dataclass(frozen=True)
@@ -267,10 +295,10 @@ def replay(folder: str | os.PathLike,
         wish = dataclasses.replace(wish, task=os.fspath(task_folder(task)))
     if level is not None:
         wish = dataclasses.replace(wish, level=whole('level', level, 0))
-    table = _dataset_class()('physpring/replay', root=root).hf_dataset.with_format('numpy')
-    index = np.asarray(table['episode_index'][:])
-    actions = np.asarray(table['action'][:], float)
-    successes = np.asarray(table['next.success'][:]).reshape(len(index))
+    index, actions, successes = _recorded(root)
+    if len(np.unique(index)) != len(numbers):
+        raise _core.Error(f'{root}: has {len(np.unique(index))} episodes, but {_META} tells of '
+                          f'{len(numbers)}')
     env = wish.env()
     for row, episode in enumerate(numbers):
         own = index == row

@@ -27,7 +27,7 @@ import numpy as np
 from physpring import _core
 from physpring._lerobot_data import record, replay
 
-__all__ = ['PolicyServer', 'record', 'replay', 'serve']
+__all__ = ['LeRobotPolicy', 'PolicyServer', 'record', 'replay', 'serve']
 
 _MOST_BYTES = 1 << 26
 
@@ -54,19 +54,34 @@ def _needed(name: str) -> Any:
 
 
 class LeRobotPolicy:
-    """A checkpoint of LeRobot (a folder, or a name on its hub): requests in, chunks of actions out.
+    """A checkpoint of LeRobot (a folder, or a name USER/MODEL on its hub): requests in, chunks of
+    actions out.
 
     device: 'cpu', 'cuda', ...; threads: of PyTorch, where it runs on a CPU.
     """
 
     def __init__(self, checkpoint: str | os.PathLike, device: str = 'cpu', threads: int = 1):
+        name = os.fspath(checkpoint)
+        is_folder = pathlib.Path(name).is_dir()
+        if not is_folder and name.count('/') != 1:
+            raise _core.Error(f'{name}: is no folder with a checkpoint, nor a name USER/MODEL')
+        if is_folder and not (pathlib.Path(name) / 'config.json').exists():
+            raise _core.Error(f'{name}: has no config.json, as a checkpoint of LeRobot has')
+        try:
+            self._load(name, device, threads)
+        except _core.Error:
+            raise
+        except Exception as error:  # of many kinds
+            first = (str(error).splitlines() or [type(error).__name__])[0]
+            raise _core.Error(f'{name}: is no checkpoint that LeRobot loads: {first}') from error
+
+    def _load(self, name: str, device: str, threads: int) -> None:
         torch = _needed('torch')
         _needed('lerobot')
         from lerobot.configs.policies import PreTrainedConfig  # type: ignore[import-not-found]
         from lerobot.policies.factory import (  # type: ignore[import-not-found]
             get_policy_class, make_pre_post_processors)
         torch.set_num_threads(threads)
-        name = os.fspath(checkpoint)
         config = PreTrainedConfig.from_pretrained(name)
         config.device = device
         self.policy = get_policy_class(config.type).from_pretrained(name, config=config)
@@ -185,18 +200,21 @@ def _main() -> None:
     parser = argparse.ArgumentParser(prog='python -m physpring.lerobot',
                                      description=(__doc__ or '').split('\n')[0])
     commands = parser.add_subparsers(dest='command', required=True)
-    recorder = commands.add_parser('record', help='episodes of a task -> a LeRobot data set')
+    recorder = commands.add_parser('record', help='episodes of a task -> a LeRobot data set',
+                                   formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     recorder.add_argument('task')
     recorder.add_argument('folder', type=pathlib.Path)
-    recorder.add_argument('--episodes', type=int, default=100)
-    recorder.add_argument('--level', type=int, default=0)
-    recorder.add_argument('--policy', default='scripted')
-    recorder.add_argument('--seed', type=int, default=0)
-    recorder.add_argument('--particles', type=int, default=32)
+    recorder.add_argument('--episodes', type=int, default=100, help='how many are run')
+    recorder.add_argument('--level', type=int, default=0, help='of the twin; 0 is the slowest')
+    recorder.add_argument('--policy', default='scripted', help='as of physpring rollout')
+    recorder.add_argument('--seed', type=int, default=0, help='of starts and policies')
+    recorder.add_argument('--particles', type=int, default=32,
+                          help='so many in observation.environment_state; 0: all, -1: none')
     recorder.add_argument('--cameras', default='', help='names, with commas')
     recorder.add_argument('--size', type=int, default=96, help='of pictures, pixels')
-    recorder.add_argument('--threads', type=int)
-    recorder.add_argument('--action-noise', type=float, default=0.0)
+    recorder.add_argument('--threads', type=int, help='episodes at once; default: all cores')
+    recorder.add_argument('--action-noise', type=float, default=0.0,
+                          help="m, of an error of the hand's place, constant in an episode")
     recorder.add_argument('--vary-looks', action='store_true',
                           help='other colours, lights and places of cameras in each episode')
     recorder.add_argument('--samples', default='', help='folder of physpring export --samples')

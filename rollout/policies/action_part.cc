@@ -18,7 +18,7 @@ using Vector = Eigen::VectorXd;
 struct Draft {
   Vector* action;
   Pose hand;  // of the policy's tool in its base, for the parts that set one half of it
-  bool has_hand = false;
+  bool has_position = false, has_orientation = false;
 };
 
 Pose Inverse(const Pose& pose) {
@@ -41,8 +41,8 @@ int JointCount(const RobotOptions& robot) {
 }
 
 void SetHandPart(const ActionPart& part, const Vector& q, Draft* draft) {
-  draft->has_hand = true;
   Pose& hand = draft->hand;
+  (part.name.starts_with("position") ? draft->has_position : draft->has_orientation) = true;
   if (part.name == "position") {
     hand.position = q;
   } else if (part.name == "position_delta") {
@@ -136,6 +136,7 @@ ActionPart ReadActionPart(const JsonFields& fields, const RobotOptions& robot) {
   } else if (part.name.ends_with("_delta") || part.name == "joint_velocity") {
     fields.ExpectOnly({"part", "scale"});
     if (fields.Has("scale")) part.scale = NumberBetween(fields, "scale", -1e6, 1e6);
+    if (part.scale == 0) fields.Fail("scale", "must not be 0");
   } else {
     fields.ExpectOnly({"part"});
   }
@@ -171,9 +172,11 @@ Vector ToAction(const ActionLayout& layout, const Vector& numbers, const ActionC
       SetHandPart(part, own, &draft);
     }
   }
-  if (!draft.has_hand) return action;
+  if (!draft.has_position && !draft.has_orientation) return action;
   const Pose hand = context.frames.base * draft.hand * Inverse(context.frames.tool);
-  action.head<7>() = CartesianAction(hand, 0).head<7>();
+  const Vector wished = CartesianAction(hand, 0);
+  if (draft.has_position) action.head<3>() = wished.head<3>();
+  if (draft.has_orientation) action.segment<4>(3) = wished.segment<4>(3);
   return action;
 }
 

@@ -117,14 +117,15 @@ msgpack::object_handle Unpack(std::string_view message) {
   ItemCounter counter;
   std::size_t end = 0;
   if (!msgpack::parse(message.data(), message.size(), end, counter)) {
-    throw PolicyError(counter.malformed() ? "the policy server's message is not msgpack"
-                                          : "the policy server's message has too many items");
+    throw PolicyServerError(counter.malformed() ? "the policy server's message is not msgpack"
+                                                : "the policy server's message has too many items");
   }
   const auto refer = [](msgpack::type::object_type, std::size_t, void*) { return true; };
   try {
     return msgpack::unpack(message.data(), message.size(), refer);
   } catch (const msgpack::unpack_error& error) {
-    throw PolicyError(fmt::format("the policy server's message is not msgpack: {}", error.what()));
+    throw PolicyServerError(
+        fmt::format("the policy server's message is not msgpack: {}", error.what()));
   }
 }
 
@@ -182,12 +183,12 @@ std::string EncodeObservation(const PolicyAdapter& adapter, const Observation& o
 Eigen::MatrixXd DecodeActions(std::string_view message, int numbers) {
   const msgpack::object_handle answer = Unpack(message);
   const msgpack::object* actions = Find(answer.get(), "actions");
-  if (!actions) throw PolicyError("the policy server's answer has no actions");
+  if (!actions) throw PolicyServerError("the policy server's answer has no actions");
   const msgpack::object* data = Find(*actions, "data");
   const msgpack::object* type = Find(*actions, "dtype");
   const msgpack::object* extents = Find(*actions, "shape");
   if (!Find(*actions, "__ndarray__") || !data || !type || !extents) {
-    throw PolicyError("the policy server's actions are no NumPy array");
+    throw PolicyServerError("the policy server's actions are no NumPy array");
   }
   std::vector<double> values;
   if (Text(*type) == "<f4") {
@@ -195,8 +196,8 @@ Eigen::MatrixXd DecodeActions(std::string_view message, int numbers) {
   } else if (Text(*type) == "<f8") {
     values = Numbers<double>(Text(*data));
   } else {
-    throw PolicyError(fmt::format("the policy server's actions are of type {}, expected <f4 or <f8",
-                                  Quote(Text(*type))));
+    throw PolicyServerError(fmt::format(
+        "the policy server's actions are of type {}, expected <f4 or <f8", Quote(Text(*type))));
   }
   const std::vector<std::uint64_t> shape = Shape(*extents);
   const auto size = static_cast<std::uint64_t>(numbers);
@@ -212,7 +213,7 @@ Eigen::MatrixXd DecodeActions(std::string_view message, int numbers) {
 void CheckMetadata(std::string_view message) {
   const msgpack::object_handle metadata = Unpack(message);
   if (metadata.get().type == msgpack::type::MAP) return;
-  throw PolicyError("the policy server does not begin with metadata, as openpi's do");
+  throw PolicyServerError("the policy server does not begin with metadata, as openpi's do");
 }
 
 }  // namespace physpring

@@ -18,10 +18,11 @@ std::string EncodeObservation(const PolicyAdapter& adapter, const Observation& o
                               const std::string& prompt);
 
 // The chunk of actions of an answer, {"actions": (frames, numbers) of a float type, ...}, as
-// numbers x frames. Throws PolicyError unless it is that, with `numbers` numbers.
+// numbers x frames. Throws PolicyServerError unless it is that, and PolicyError where the actions
+// are not of `numbers` numbers.
 Eigen::MatrixXd DecodeActions(std::string_view message, int numbers);
 
-// Throws PolicyError unless the message is a map: what a server sends when one connects.
+// Throws PolicyServerError unless the message is a map: what a server sends when one connects.
 void CheckMetadata(std::string_view message);
 
 }  // namespace physpring

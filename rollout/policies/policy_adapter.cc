@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "rollout/task_fields.h"
 #include "twin/json_fields.h"
@@ -80,11 +82,34 @@ std::vector<RequestField> ReadRequest(const JsonFields& fields, const Task& task
   return request;
 }
 
+// What a part of an action tells; two parts must not tell the same.
+std::string TellsOf(const ActionPart& part) {
+  if (part.name.starts_with("position")) return "where the hand is";
+  if (part.name.starts_with("quaternion") || part.name.starts_with("axis_angle")) {
+    return "how the hand is turned";
+  }
+  return part.name.starts_with("joint") ? "the joints" : part.name;
+}
+
+void ExpectSense(const std::vector<ActionPart>& parts, const JsonFields& fields) {
+  std::set<std::string> told;
+  for (const ActionPart& part : parts) {
+    if (part.name != "unused" && !told.insert(TellsOf(part)).second) {
+      fields.Fail("action", fmt::format("tells {} twice", TellsOf(part)));
+    }
+  }
+  if (told.empty()) fields.Fail("action", "moves nothing");
+  if (told.contains("robot") && told.size() > 1) {
+    fields.Fail("action", "has the part robot, which tells everything, and others");
+  }
+}
+
 ActionLayout ReadAction(const JsonFields& fields, const Task& task) {
   ActionLayout action;
   for (std::size_t i = 0; i < PartCount(fields, "action"); ++i) {
     action.parts.push_back(ReadActionPart(PartFields(fields, "action", i), task.robot));
   }
+  ExpectSense(action.parts, fields);
   if (SizeOf(action, task.robot) > kMostNumbers) fields.Fail("action", "has too many numbers");
   if (fields.Has("clip")) action.clip = PositiveNumber(fields, "clip", 1e6);
   if (fields.Has("deltas_from")) {
@@ -122,6 +147,7 @@ PolicyAdapter ReadPolicyAdapter(const std::string& file, const Task& task) {
                      "frames_per_action", "base", "tool"});
   PolicyAdapter adapter;
   adapter.request = ReadRequest(fields.Object("request"), task);
+  if (adapter.request.empty()) fields.Fail("request", "is empty");
   adapter.action = ReadAction(fields, task);
   if (fields.Has("base")) adapter.frames.base = ReadPose(fields.Object("base"));
   if (fields.Has("tool")) adapter.frames.tool = ReadPose(fields.Object("tool"));

@@ -37,6 +37,7 @@ struct Address {
 Address ParseAddress(const std::string& text) {
   constexpr std::string_view kScheme = "ws://", kDigits = "0123456789";
   constexpr std::size_t kNowhere = std::string::npos;
+  constexpr int kMostPort = 65535;
   const std::size_t path = text.find('/', kScheme.size());
   const std::string place = text.substr(0, path);
   const std::size_t colon = place.rfind(':');
@@ -50,7 +51,8 @@ Address ParseAddress(const std::string& text) {
   const bool is_host =
       !address.host.empty() && (bracketed || address.host.find_first_of(":[]") == kNowhere);
   const bool is_port = !address.port.empty() && address.port.size() <= 5 &&
-                       address.port.find_first_not_of(kDigits) == kNowhere;
+                       address.port.find_first_not_of(kDigits) == kNowhere &&
+                       std::stoi(address.port) <= kMostPort;
   if (is_host && is_port) return address;
   throw Error(fmt::format("policy {}: expected ws://HOST:PORT", Quote(text)));
 }
@@ -111,22 +113,27 @@ class Connection {
     });
   }
 
-  std::string Receive() {
+  // What a server sends as soon as one connects.
+  std::string ReceiveMetadata() { return Receive(patience_.answer, "sends no metadata"); }
+  std::string ReceiveAnswer() {
     const double patience = answered_ ? patience_.answer : patience_.first_answer;
+    answered_ = true;
+    return Receive(patience, "does not answer");
+  }
+
+ private:
+  std::string Receive(double patience, const char* failing) {
     std::unique_lock lock(mutex_);
     const bool came = changed_.wait_for(lock, Seconds(patience),
                                         [this] { return !messages_.empty() || !failure_.empty(); });
-    if (!came) Fail(fmt::format("does not answer within {} s", patience));
+    if (!came) Fail(fmt::format("{} within {} s", failing, patience));
     if (messages_.empty()) Fail(failure_);
     const auto [message, is_text] = std::move(messages_.front());
     messages_.pop();
     if (is_text) Fail("says " + Quote(LastLine(message)));  // openpi's servers tell errors so
     return message;
   }
-  // From here on answers come soon.
-  void HasAnswered() { answered_ = true; }
 
- private:
   // Tries again and again: a server that loads a model is not up at once.
   void Connect(const Address& address) {
     const auto start = std::chrono::steady_clock::now();
@@ -170,8 +177,7 @@ class Connection {
   void Read() {
     stream_.async_read(buffer_, [this](boost::system::error_code failure, std::size_t) {
       if (failure) {
-        const std::string reason = std::string(stream_.reason().reason.c_str());
-        End(reason.empty() ? failure.message() : fmt::format("closed: {}", Quote(reason)));
+        End(failure == beast::websocket::error::closed ? Closing() : failure.message());
         return;
       }
       {
@@ -182,6 +188,12 @@ class Connection {
       buffer_.consume(buffer_.size());
       Read();
     });
+  }
+  // Why the server closed the connection, by its own words.
+  std::string Closing() const {
+    const beast::websocket::close_reason& reason = stream_.reason();
+    if (reason.reason.empty()) return fmt::format("closed without a reason, code {}", reason.code);
+    return fmt::format("closed: {}", Quote(std::string(reason.reason.c_str())));
   }
   void End(const std::string& failure) {
     {
@@ -229,7 +241,7 @@ class WebsocketPolicy : public Policy {
     chunks_.Reset();
     command_.resize(0);
     connection_ = std::make_unique<Connection>(address_, patience_);
-    CheckMetadata(connection_->Receive());
+    CheckMetadata(connection_->ReceiveMetadata());
   }
 
   Eigen::VectorXd Act(const Observation& observation) override {
@@ -237,8 +249,7 @@ class WebsocketPolicy : public Policy {
     if (held_ == 0) {
       if (chunks_.empty()) {
         connection_->Send(EncodeObservation(adapter_, observation, prompt_));
-        chunks_.Add(DecodeActions(connection_->Receive(), SizeOf(adapter_.action, robot_)));
-        connection_->HasAnswered();
+        chunks_.Add(DecodeActions(connection_->ReceiveAnswer(), SizeOf(adapter_.action, robot_)));
       }
       command_ = ToAction(adapter_.action, chunks_.Next(),
                           {robot_, adapter_.frames, observation, command_, seconds_});

@@ -72,6 +72,6 @@ std::vector<std::string> physpring::FuzzSeeds() {
           R"("base":{"position":[1,0,0]},"tool":{"quaternion":[0,1,0,0]}})",
           R"({"request":{"j":["joints","robot"]},"action":["joint_velocity","gripper"],)"
           R"("ensemble":0.01})",
-          R"({"request":{},"action":["position","quaternion_xyzw"]})",
-          R"({"request":{},"action":["joints"]})"};
+          R"({"request":{"p":"prompt"},"action":["position","quaternion_xyzw"]})",
+          R"({"request":{"p":"prompt"},"action":["joints"]})"};
 }

@@ -50,6 +50,15 @@ TEST(Looks, StayWithinTheirBoundsAndDifferBySeed) {
   EXPECT_LT(2 * std::acos(std::min(1.0, cosine)), std::sqrt(3) * 1.5 * mjPI / 180);
 }
 
+TEST(Looks, WhatHasOneColourKeepsOneColour) {
+  const ModelPtr model = Scene();
+  std::copy_n(model->mat_rgba, 4, model->geom_rgba);  // of another kind, the same colour
+  VaryLooks(3, model.get());
+  for (int colour = 0; colour < 4; ++colour) {
+    EXPECT_EQ(model->geom_rgba[colour], model->mat_rgba[colour]);
+  }
+}
+
 TEST(Looks, NothingThatMovesChanges) {
   const ModelPtr before = Scene(), after = Scene();
   VaryLooks(1, after.get());

@@ -25,6 +25,8 @@ std::string Refusal(const std::string& message) {
     DecodeActions(message, 2);
   } catch (const PolicyError& error) {
     return error.what();
+  } catch (const PolicyServerError& error) {
+    return error.what();
   }
   return "";
 }
@@ -45,6 +47,17 @@ TEST(OpenpiMessages, OtherShapesAndTypesAreRefused) {
             "the policy server's actions have shape (), expected (n, 2)");
   EXPECT_EQ(Refusal(Answer(kOneAndTwo, "<f2", "\x92\x01\x02")),
             "the policy server's actions are of type '<f2', expected <f4 or <f8");
+}
+
+// Who sends no actions at all speaks another protocol, which says nothing of the policy.
+TEST(OpenpiMessages, OtherActionsAreThePolicysFaultAndOtherMessagesTheServers) {
+  EXPECT_THROW(DecodeActions(Answer(kOneAndTwo, "<f4", "\x92\x02\x01"), 2), PolicyError);
+  for (const std::string& message :
+       {std::string("\xc1"), std::string("\x80"), Answer(kOneAndTwo, "<f2", "\x92\x01\x02"),
+        std::string("\x81") + Bytes("actions") + "\x92\x01\x02"}) {
+    EXPECT_THROW(DecodeActions(message, 2), PolicyServerError);
+  }
+  EXPECT_THROW(CheckMetadata("\x92\x01\x02"), PolicyServerError);
 }
 
 TEST(OpenpiMessages, WhatIsCutShortIsRefused) {
@@ -83,8 +96,8 @@ TEST(OpenpiMessages, DepthIsLimited) {
 
 TEST(OpenpiMessages, MetadataIsAMap) {
   EXPECT_NO_THROW(CheckMetadata("\x80"));
-  EXPECT_THROW(CheckMetadata("\x90"), PolicyError);
-  EXPECT_THROW(CheckMetadata(std::string(1000000, '\x81')), PolicyError);
+  EXPECT_THROW(CheckMetadata("\x90"), PolicyServerError);
+  EXPECT_THROW(CheckMetadata(std::string(1000000, '\x81')), PolicyServerError);
 }
 
 }  // namespace

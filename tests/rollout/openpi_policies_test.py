@@ -173,7 +173,7 @@ asyncio.run(main())'''
         self.with_finger()
         self.rollout('libero')
         other = self.folder / 'other.json'
-        other.write_text(json.dumps({'request': {}, 'action': ['robot']}))
+        other.write_text(json.dumps({'request': {'p': 'prompt'}, 'action': ['robot']}))
         done = subprocess.run([PHYSPRING, 'rollout', self.task, '--policy', 'ws://127.0.0.1:1',
                                '--policy-adapter', other, '-o', self.folder / 'out'],
                               capture_output=True, text=True)

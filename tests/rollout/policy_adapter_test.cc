@@ -115,6 +115,17 @@ TEST_F(PolicyAdapterTest, DeltasMayStartFromTheCommand) {
   EXPECT_NEAR(action[7], 0.5, 1e-12);
 }
 
+// The hand is measured elsewhere than it was sent: only what is told changes.
+TEST_F(PolicyAdapterTest, WhatIsNotToldStaysAsCommanded) {
+  seen_.hand = {Eigen::Vector3d(0.11, 0.2, 0.3), Yaw(pi / 2 + 0.1)};
+  const Eigen::VectorXd moved = Action(
+      Read(R"({"request": {"s": ["robot"]}, "action": ["position"]})"), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(moved.tail(5), seen_.robot.tail(5));
+  const Eigen::VectorXd turned = Action(
+      Read(R"({"request": {"s": ["robot"]}, "action": ["axis_angle"]})"), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(turned.head(3), seen_.robot.head(3));
+}
+
 TEST_F(PolicyAdapterTest, ABinaryGripperTakesWhatIsNearer) {
   const PolicyAdapter adapter = Read(R"({"request": {"s": ["robot"]},
       "action": [{"part": "unused", "count": 2},
@@ -154,7 +165,7 @@ TEST_F(PolicyAdapterTest, JointsMoveFromWhereTheyAre) {
 
 TEST_F(PolicyAdapterTest, WhatIsWrongIsOneLine) {
   const std::string action = R"(, "action": ["robot"]})";
-  EXPECT_EQ(Refusal(R"({"request": {}})"), "key 'action' must be a list of parts");
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"}})"), "key 'action' must be a list of parts");
   EXPECT_EQ(Refusal(R"({"request": {"s": ["hand"]})" + action),
             "key 'request.s[0].part' holds 'hand', expected one of robot, position, "
             "quaternion_wxyz, quaternion_xyzw, axis_angle, joints, gripper, particles, sensor");
@@ -167,9 +178,19 @@ TEST_F(PolicyAdapterTest, WhatIsWrongIsOneLine) {
   EXPECT_EQ(Refusal(R"({"request": {"s": 3})" + action),
             "key 'request.s' must be \"prompt\", a picture, a list of parts of the state, or an "
             "object");
-  EXPECT_EQ(Refusal(R"({"request": {}, "action": ["joint_delta"]})"),
+  EXPECT_EQ(Refusal(R"({"request": {})" + action), "key 'request' is empty");
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"}, "action": ["position", "position_delta"]})"),
+            "key 'action' tells where the hand is twice");
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"}, "action": ["robot", "gripper"]})"),
+            "key 'action' has the part robot, which tells everything, and others");
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"}, "action": ["unused"]})"),
+            "key 'action' moves nothing");
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"},
+                        "action": [{"part": "position_delta", "scale": 0}]})"),
+            "key 'action[0].scale' must not be 0");
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"}, "action": ["joint_delta"]})"),
             "key 'action[0].part' is joint_delta, but the robot is cartesian");
-  EXPECT_EQ(Refusal(R"({"request": {}, "execute": 3, "ensemble": 0.1)" + action),
+  EXPECT_EQ(Refusal(R"({"request": {"p": "prompt"}, "execute": 3, "ensemble": 0.1)" + action),
             "key 'execute' does not go with ensemble");
   EXPECT_EQ(Refusal(R"({"request": {}, "chunk": 3)" + action).substr(0, 24),
             "key 'chunk' is not known");
