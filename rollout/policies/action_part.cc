@@ -85,16 +85,20 @@ void SetGripper(const ActionPart& part, double value, const RobotOptions& robot,
   }
 }
 
-// How many numbers each part has, by its name; a negative one: as many as the robot has joints.
+// How many numbers each part has, by its name; 0: that depends.
 const std::map<std::string, int>& Sizes() {
-  constexpr int kJoints = -1, kOwn = -2;
-  static const std::map<std::string, int> sizes = {
-      {"robot", kOwn},          {"position", 3},
-      {"position_delta", 3},    {"quaternion_wxyz", 4},
-      {"quaternion_xyzw", 4},   {"axis_angle", 3},
-      {"axis_angle_delta", 3},  {"joints", kJoints},
-      {"joint_delta", kJoints}, {"joint_velocity", kJoints},
-      {"gripper", 1},           {"unused", kOwn}};
+  static const std::map<std::string, int> sizes = {{"robot", 0},
+                                                   {"position", 3},
+                                                   {"position_delta", 3},
+                                                   {"quaternion_wxyz", 4},
+                                                   {"quaternion_xyzw", 4},
+                                                   {"axis_angle", 3},
+                                                   {"axis_angle_delta", 3},
+                                                   {"joints", 0},
+                                                   {"joint_delta", 0},
+                                                   {"joint_velocity", 0},
+                                                   {"gripper", 1},
+                                                   {"unused", 0}};
   return sizes;
 }
 
