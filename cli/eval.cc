@@ -18,10 +18,10 @@
 #include "report/eval_report.h"
 #include "report/evaluation.h"
 #include "report/picture/page.h"
-#include "twin/parallel.h"
 #include "twin/atomic_file.h"
 #include "twin/clock_offset.h"
 #include "twin/dataset.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

@@ -18,6 +18,7 @@
 #include "splats/splat_file.h"
 #include "splats/splat_motion.h"
 #include "twin/atomic_file.h"
+#include "twin/clock_offset.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/output_lock.h"

@@ -10,9 +10,9 @@
 #include "trainer/data/held_back.h"
 #include "trainer/fits/net_fit.h"
 #include "trainer/motion/residual_correlation.h"
-#include "twin/parallel.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/plausibility.h"
+#include "twin/parallel.h"
 #include "twin/stability.h"
 
 namespace physpring {

@@ -24,8 +24,8 @@ std::vector<Tap> Taps(int from, int to) {
   std::vector<Tap> taps;
   for (int pixel = 0; pixel < to; ++pixel) {
     const double centre = (pixel + 0.5) * scale;
-    const int first = std::max(0, static_cast<int>(centre - stretch + 0.5));
-    const int end = std::min(from, static_cast<int>(centre + stretch + 0.5));
+    const int first = std::max(0, static_cast<int>(std::floor(centre - stretch + 0.5)));
+    const int end = std::min(from, static_cast<int>(std::floor(centre + stretch + 0.5)));
     std::vector<double> weights;
     double sum = 0;
     for (int i = first; i < end; ++i) {
@@ -34,7 +34,7 @@ std::vector<Tap> Taps(int from, int to) {
     }
     Tap tap{first, {}};
     for (const double weight : weights) {
-      tap.weights.push_back(static_cast<int>(0.5 + weight / sum * (1 << kBits)));
+      tap.weights.push_back(static_cast<int>(std::floor(0.5 + weight / sum * (1 << kBits))));
     }
     taps.push_back(std::move(tap));
   }

@@ -100,7 +100,8 @@ class Rasteriser {
   Tile Begin(int i) const {
     Tile tile;
     tile.left = static_cast<float>(i % columns_ * kTile);
-    tile.top = static_cast<float>(i / columns_ * kTile);
+    const int row = i / columns_;
+    tile.top = static_cast<float>(row * kTile);
     ForEachPixel(i, [&](int pixel, std::size_t place) {  // T stays 0 beyond the picture
       tile.transmission[pixel] = 1;
       tile.depth[pixel] =

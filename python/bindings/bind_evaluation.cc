@@ -11,8 +11,8 @@
 #include "python/bindings/watched_work.h"
 #include "report/eval_report.h"
 #include "report/picture/page.h"
-#include "twin/parallel.h"
 #include "twin/error.h"
+#include "twin/parallel.h"
 #include "twin/regrasp.h"
 
 namespace physpring {

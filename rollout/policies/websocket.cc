@@ -193,7 +193,7 @@ class Connection {
   std::string Closing() const {
     const beast::websocket::close_reason& reason = stream_.reason();
     if (reason.reason.empty()) return fmt::format("closed without a reason, code {}", reason.code);
-    return fmt::format("closed: {}", Quote(std::string(reason.reason.c_str())));
+    return fmt::format("closed: {}", Quote(reason.reason.c_str()));
   }
   void End(const std::string& failure) {
     {

@@ -116,13 +116,13 @@ void ExpectAsReference(const PlacedSplats& splats, const PinholeCamera& camera,
   EXPECT_GT(most_covered, 0.9);  // something is there
 }
 
-class Rasterise_ : public ::testing::TestWithParam<int> {};
+class RasteriseAtDegree : public ::testing::TestWithParam<int> {};
 
-TEST_P(Rasterise_, IsThePublishedFormula) {
+TEST_P(RasteriseAtDegree, IsThePublishedFormula) {
   const Splats splats = RandomSplats(400, GetParam(), 7);
   ExpectAsReference(AsStored(splats), Camera(90, 70), {});
 }
-INSTANTIATE_TEST_SUITE_P(OfEachDegree, Rasterise_, ::testing::Values(0, 1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(OfEachDegree, RasteriseAtDegree, ::testing::Values(0, 1, 2, 3));
 
 TEST(Rasterise, ABackdropIsBehindAndBetween) {
   const Splats splats = RandomSplats(400, 0, 8);

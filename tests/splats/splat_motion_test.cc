@@ -15,7 +15,8 @@ namespace {
 Points Grid(int x, int y, int z, double gap) {
   Points nodes(3, x * y * z);
   for (int i = 0; i < nodes.cols(); ++i) {
-    nodes.col(i) = gap * Eigen::Vector3d(i % x, i / x % y, i / (x * y));
+    const int layer = i / (x * y);
+    nodes.col(i) = gap * Eigen::Vector3d(i % x, i / x % y, layer);
   }
   return nodes.colwise() - nodes.rowwise().mean();
 }

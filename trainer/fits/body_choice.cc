@@ -13,8 +13,8 @@
 #include "trainer/data/held_back.h"
 #include "trainer/motion/observer.h"
 #include "trainer/motion/track_error.h"
-#include "twin/parallel.h"
 #include "twin/error.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

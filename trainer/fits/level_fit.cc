@@ -15,8 +15,8 @@
 #include "trainer/network/corrections_fit.h"
 #include "trainer/network/level_network.h"
 #include "trainer/solvers/levenberg_marquardt.h"
-#include "twin/parallel.h"
 #include "twin/error.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

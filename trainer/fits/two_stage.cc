@@ -11,8 +11,8 @@
 #include "trainer/motion/loss.h"
 #include "trainer/motion/rollout.h"
 #include "trainer/solvers/cma_es.h"
-#include "twin/parallel.h"
 #include "twin/error.h"
+#include "twin/parallel.h"
 #include "twin/stability.h"
 
 namespace physpring {

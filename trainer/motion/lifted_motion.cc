@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "trainer/motion/lane_rollout.h"
-#include "twin/parallel.h"
 #include "twin/hierarchy.h"
 #include "twin/lane_simulator.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {

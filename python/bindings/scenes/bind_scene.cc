@@ -8,8 +8,8 @@
 #include "python/bindings/scenes/task_scene.h"
 #include "python/bindings/watched_work.h"
 #include "rollout/picture_size.h"
-#include "twin/parallel.h"
 #include "twin/error.h"
+#include "twin/parallel.h"
 
 namespace physpring {
 namespace {
