@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
@@ -63,6 +64,8 @@ void PrintCheck(const SplatsArguments& arguments, const Splats& splats, const Po
   const PlacementCheck check = CheckPlacement(splats, nodes);
   fmt::print("{}: {} splats, harmonics to degree {}; half of them within {:.1f} mm of a node\n",
              arguments.splats, splats.count(), splats.degree, 1e3 * check.median);
+  fmt::print("  nine tenths of them, along each axis: {}\n  the twin's nodes: {}\n",
+             BoxText(check.low, check.high), BoxText(check.node_low, check.node_high));
   std::vector<std::string> warnings;
   for (const std::string& warning : WarningsOf(check)) {
     warnings.push_back(arguments.splats + ": " + warning);
@@ -80,6 +83,10 @@ void WriteFrames(const SplatsArguments& arguments, const Splats& splats,
   for (std::size_t frame = 0; frame < nodes.size(); frame += arguments.every) {
     frames.push_back(frame);
     ExpectNew(path(frame), arguments.force);
+    std::error_code unlike;  // as where one is not there
+    if (std::filesystem::equivalent(path(frame), arguments.splats, unlike)) {
+      throw Error(path(frame) + ": is the input; use another folder");
+    }
   }
   MakeFolder(arguments.folder);
   const OutputLock lock(arguments.folder);
@@ -87,7 +94,10 @@ void WriteFrames(const SplatsArguments& arguments, const Splats& splats,
   const InterruptWatch watch;
   Progress progress(0);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (watch.signal() != 0) throw Interrupted{watch.signal()};
+    if (watch.signal() != 0) {
+      Tell("physpring: stopped; {} of {} frames are written\n", i, frames.size());
+      throw Interrupted{watch.signal()};
+    }
     WriteSplats(Settle(motion.At(nodes[frames[i]], arguments.threads)), path(frames[i]));
     progress.Show(static_cast<double>(i + 1) / static_cast<double>(frames.size()),
                   fmt::format("frame {} of {}", i + 1, frames.size()));
@@ -145,7 +155,8 @@ void AddSplatsCommand(CLI::App& app) {
           ->type_name("REC.npz");
   command
       ->add_option("-o,--output", arguments->folder,
-                   "folder for frame_00000.ply ...; without one only the place is checked")
+                   "folder for frame_00000.ply ..., for which a recording is needed")
+      ->check(NotEmpty())
       ->needs(recording)
       ->type_name("DIR");
   command->add_option("--level", arguments->level, "of the twin")

@@ -6,15 +6,10 @@
 #include <cmath>
 
 #include "splats/rasterise.h"
-#include "splats/splat_file.h"
 #include "twin/hierarchy.h"
 
 namespace physpring {
 namespace {
-
-Splats ReadTaskSplats(const Task& task) {
-  return Place(ReadSplats(task.splats.file), task.splats.placement);
-}
 
 Points ReferenceNodes(const TaskModel& model) {
   const SpringMassSystem& system = LevelOf(model.task->twin, model.level).system;
@@ -28,9 +23,7 @@ unsigned char ByteOf(float colour) {
 }  // namespace
 
 SplatLayer::SplatLayer(const TaskModel& model)
-    : model_(model),
-      splats_(ReadTaskSplats(*model.task)),
-      motion_(splats_, ReferenceNodes(model)) {}
+    : model_(model), motion_(*model.splats, ReferenceNodes(model)) {}
 
 Image SplatLayer::Compose(const DrawnScene& scene, const mjData& data) const {
   const std::size_t pixels = static_cast<std::size_t>(scene.width) * scene.height;

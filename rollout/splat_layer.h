@@ -25,7 +25,7 @@ struct DrawnScene {
 
 class SplatLayer {
  public:
-  // Reads the task's splats. The model lives longer. Throws Error, which begins with the file.
+  // Of a model that has splats, which lives longer.
   explicit SplatLayer(const TaskModel& model);
   SplatLayer(const SplatLayer&) = delete;
   SplatLayer& operator=(const SplatLayer&) = delete;
@@ -35,7 +35,6 @@ class SplatLayer {
 
  private:
   const TaskModel& model_;
-  Splats splats_;
   SplatMotion motion_;
 };
 

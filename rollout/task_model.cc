@@ -8,6 +8,8 @@
 
 #include "rollout/mujoco_log.h"
 #include "rollout/scene_spec.h"
+#include "splats/placement.h"
+#include "splats/splat_file.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/npz.h"
@@ -114,6 +116,20 @@ void FindRobot(const std::string& where, TaskModel* made) {
   }
 }
 
+// The task's splats, in the frame of the twin.
+std::shared_ptr<const Splats> ReadTaskSplats(const Task& task, int level,
+                                             std::vector<std::string>* warnings) {
+  if (task.splats.file.empty()) return nullptr;
+  const SpringMassSystem& system = LevelOf(task.twin, level).system;
+  auto splats =
+      std::make_shared<Splats>(Place(ReadSplats(task.splats.file), task.splats.placement));
+  const Points nodes = system.position.leftCols(system.node_count());
+  for (const std::string& warning : WarningsOf(CheckPlacement(*splats, nodes))) {
+    warnings->push_back(task.splats.file + ": " + warning);
+  }
+  return splats;
+}
+
 std::string Numbers(const Pose& pose) {
   const Eigen::Vector3d& p = pose.position;
   const Eigen::Quaterniond& q = pose.orientation;
@@ -157,6 +173,7 @@ TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* w
     made.sensors.push_back(Find(*made.model, mjOBJ_SENSOR, sensor, where));
   }
   for (const std::string& camera : task.cameras) Find(*made.model, mjOBJ_CAMERA, camera, where);
+  made.splats = ReadTaskSplats(task, level, warnings);
   made.success = MakeSuccessRule(task);
   return made;
 }

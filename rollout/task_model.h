@@ -3,12 +3,14 @@
 #ifndef PHYSPRING_ROLLOUT_TASK_MODEL_H_
 #define PHYSPRING_ROLLOUT_TASK_MODEL_H_
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "rollout/scene.h"
 #include "rollout/success_rule.h"
 #include "rollout/task.h"
+#include "splats/splats.h"
 
 namespace physpring {
 
@@ -30,6 +32,8 @@ struct TaskModel {
   std::vector<int> joint_qpos;  // where the actuators' joints are in qpos; -1: drives no joint
   std::vector<int> sensors;     // of Task::sensors
 
+  std::shared_ptr<const Splats> splats;  // in the twin's frame; null: none
+
   int success_body = 0;
   std::unique_ptr<const SuccessRule> success;
 
@@ -40,8 +44,8 @@ struct TaskModel {
 
 // The level's model is attached to the scene in a frame at `task.object`, after all that the scene
 // has, and the time step is shortened so that a frame is a whole number of them. Adds MuJoCo's
-// warnings to `warnings`. Throws Error, one line that begins with a file, when something does not
-// compile or is not there.
+// warnings to `warnings`, and where the splats lie elsewhere than the nodes. Throws Error, one line
+// that begins with a file, when something does not compile or is not there.
 TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* warnings);
 
 // A hash of all that the compiled model holds.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "splats/settle.h"
 #include "twin/neighbours.h"
@@ -22,12 +23,12 @@ double Quantile(std::vector<double>* numbers, double part) {
   return (*numbers)[static_cast<std::size_t>(place)];
 }
 
-std::string Box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+}  // namespace
+
+std::string BoxText(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return fmt::format("{:.3g} {:.3g} {:.3g} to {:.3g} {:.3g} {:.3g} m", low.x(), low.y(), low.z(),
                      high.x(), high.y(), high.z());
 }
-
-}  // namespace
 
 Splats Place(const Splats& splats, const Placement& placement) {
   const Eigen::Matrix3f turn = placement.turn.toRotationMatrix().cast<float>();
@@ -61,6 +62,11 @@ PlacementCheck CheckPlacement(const Splats& splats, const Points& nodes) {
   }
   check.node_low = nodes.rowwise().minCoeff();
   check.node_high = nodes.rowwise().maxCoeff();
+  const double half = (check.node_high - check.node_low).norm() / 2;
+  for (int i = 0; i < splats.count(); ++i) {
+    const double widest = std::exp(static_cast<double>(splats.log_scale.col(i).maxCoeff()));
+    check.large += half > 0 && widest > half ? 1 : 0;
+  }
   return check;
 }
 
@@ -72,14 +78,19 @@ std::vector<std::string> WarningsOf(const PlacementCheck& check) {
     warnings.push_back(fmt::format(
         "the splats are {:.3g} times as large as the twin ({}; the nodes {}): another scale, or "
         "more than the object; --scale",
-        size / node_size, Box(check.low, check.high), Box(check.node_low, check.node_high)));
+        size / node_size, BoxText(check.low, check.high),
+        BoxText(check.node_low, check.node_high)));
+  }
+  if (check.large > 0) {
+    warnings.push_back(fmt::format(
+        "{} splats are wider than half of the twin: cut them away in a viewer", check.large));
   }
   if (check.far > kMostFar) {
     warnings.push_back(fmt::format(
         "{:.0f} % of the splats are more than {:.0f} mm from all nodes, whose spacing is {:.1f} "
         "mm: another place ({}; the nodes {}), or not the object's; --position, --quaternion",
         100 * check.far, 1e3 * kFarSpacings * check.spacing, 1e3 * check.spacing,
-        Box(check.low, check.high), Box(check.node_low, check.node_high)));
+        BoxText(check.low, check.high), BoxText(check.node_low, check.node_high)));
   }
   return warnings;
 }

@@ -29,9 +29,13 @@ struct PlacementCheck {
   double far = 0;             // part of them that is more than three spacings off
   Eigen::Vector3d low, high;  // m, box of the splats between their 5th and 95th percentiles
   Eigen::Vector3d node_low, node_high;  // m, box of the nodes
+  int large = 0;                        // splats whose deviation is more than half of that box
 };
 
 PlacementCheck CheckPlacement(const Splats& splats, const Points& nodes);
+
+// "X Y Z to X Y Z m".
+std::string BoxText(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
 // What a user must know of it: splats in another place or scale than the nodes; empty if none.
 std::vector<std::string> WarningsOf(const PlacementCheck& check);

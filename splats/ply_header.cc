@@ -75,7 +75,7 @@ class Parser {
     if (!in_vertex_) return;  // behind what is read
     std::istringstream number(count);
     if (!(number >> header_.count) || header_.count < 1) {
-      FailPly(path_, fmt::format("has {} splats", Quote(count)));
+      FailPly(path_, fmt::format("has {} splats, expected 1 or more", Quote(count)));
     }
     if (header_.count > kMostSplats) {
       FailPly(path_, fmt::format("has {} splats, expected at most {}", header_.count, kMostSplats));
@@ -109,7 +109,8 @@ PlyHeader ReadPlyHeader(const std::string& path, std::string_view bytes) {
 std::size_t FloatAt(const PlyHeader& header, const std::string& path, const std::string& name) {
   const auto found = header.floats.find(name);
   if (found != header.floats.end()) return found->second;
-  FailPly(path, fmt::format("has no property {} of floats, so it holds no splats", Quote(name)));
+  FailPly(path,
+          fmt::format("has no property {} of type float, so it is no file of splats", Quote(name)));
 }
 
 void FailPly(const std::string& path, const std::string& what) { throw Error(path + ": " + what); }

@@ -62,6 +62,15 @@ void Put(const std::vector<float>& numbers, int i, Splats* splats) {
   take(splats->harmonics.col(i));
 }
 
+// Some programs write flat splats and full opacities as infinities.
+void Bound(int i, Splats* splats) {
+  for (float& scale : splats->log_scale.col(i)) {
+    if (scale < -kMostLogScale) scale = -kMostLogScale;
+  }
+  float& logit = splats->logit[i];
+  if (std::abs(logit) > kMostLogit) logit = std::copysign(kMostLogit, logit);
+}
+
 void Check(const std::string& path, int i, const Splats& splats) {
   const auto fail = [&](const char* what) {
     FailPly(path, fmt::format("splat {} has {}", i, what));
@@ -70,8 +79,9 @@ void Check(const std::string& path, int i, const Splats& splats) {
     return (numbers.array().abs() <= most).all();  // false for NaN
   };
   if (!within(splats.position.col(i), kFarthest)) fail("a position that is not finite, or far off");
-  if (!within(splats.log_scale.col(i), kMostLogScale)) fail("a scale that is not finite, or huge");
-  if (!within(splats.logit.segment<1>(i), kMostLogit)) fail("an opacity that is not finite");
+  if (!within(splats.log_scale.col(i), kMostLogScale))
+    fail("a scale that is not a number, or huge");
+  if (!within(splats.logit.segment<1>(i), kMostLogit)) fail("an opacity that is not a number");
   if (!within(splats.harmonics.col(i), kMostColour)) fail("a colour that is not finite, or huge");
   constexpr float kLeast = 1e-6F;
   const float length = splats.rotation.col(i).norm();
@@ -105,6 +115,7 @@ Splats ReadSplats(const std::string& path) {
       std::memcpy(&numbers[k], row + places[k], sizeof(float));
     }
     Put(numbers, i, &splats);
+    Bound(i, &splats);
     Check(path, i, splats);
   }
   return splats;

@@ -38,10 +38,15 @@ def points_on(low, high, count):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('twin')
-    parser.add_argument('output', type=pathlib.Path)
-    parser.add_argument('--count', type=int, default=20000)
+    parser.add_argument('twin', help='of a block-shaped object')
+    parser.add_argument('output', type=pathlib.Path, help='.ply to write')
+    parser.add_argument('--count', type=int, default=20000, help='of splats, to 4000000; default 20000')
+    parser.add_argument('--force', action='store_true', help='overwrite a file')
     arguments = parser.parse_args()
+    if not 1 <= arguments.count <= 4000000:
+        parser.error(f'--count is {arguments.count}, expected 1 to 4000000')
+    if arguments.output.exists() and not arguments.force:
+        parser.error(f'{arguments.output}: is there already (--force)')
     try:
         low, high = box_of(arguments.twin)
     except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
@@ -56,7 +61,14 @@ def main():
     rows[:, 10] = 1
     header = ['ply', 'format binary_little_endian 1.0', f'element vertex {arguments.count}',
               *(f'property float {name}' for name in COLUMNS), 'end_header', '']
-    arguments.output.write_bytes('\n'.join(header).encode() + rows.tobytes())
+    try:
+        write(arguments.output, header, rows)
+    except OSError as error:
+        parser.error(f'{arguments.output}: cannot be written: {error}')
+
+
+def write(path, header, rows):
+    path.write_bytes('\n'.join(header).encode() + rows.tobytes())
 
 
 if __name__ == '__main__':

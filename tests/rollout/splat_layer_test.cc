@@ -127,20 +127,29 @@ TEST_F(SplatLayerTest, WhatIsNearerHidesThemAndTheyHideWhatIsFarther) {
   marks.col(0) = middle;  // in the block
   EXPECT_TRUE(IsGreen(Colour(Paint(&splats, marks), pixel)));
   // it is seen where the splats are clear
-  Splats clear = ReadSplats(task_.File("block.ply"));
+  Splats clear = *model_.splats;
   clear.logit.setConstant(-9);
-  WriteSplats(clear, task_.File("block.ply"));
+  model_.splats = std::make_shared<Splats>(clear);
   const SplatLayer no_splats(model_);
   EXPECT_NE(Colour(Paint(&no_splats, marks), pixel),
             Colour(Paint(&no_splats, Points(3, 0)), pixel));
 }
 
+TEST_F(SplatLayerTest, SplatsElsewhereAreAWarning) {
+  Task task = read_;
+  task.splats.placement.shift = {3, 0, 0};
+  std::vector<std::string> warnings;
+  MakeTaskModel(task, 0, &warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("another place"), std::string::npos) << warnings[0];
+}
+
 TEST_F(SplatLayerTest, AFileThatIsNotThereIsNamed) {
   Task task = read_;
   task.splats.file = task_.File("none.ply");
-  model_.task = &task;
+  std::vector<std::string> warnings;
   try {
-    const SplatLayer splats(model_);
+    MakeTaskModel(task, 0, &warnings);
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("none.ply"), std::string::npos);

@@ -92,12 +92,12 @@ TEST_F(SplatFileTest, OtherFilesAreRefused) {
   EXPECT_EQ(Refusal(With(good, "float x", "uint packed_position")),
             "is compressed; convert it to a plain .ply of Gaussians");
   EXPECT_EQ(Refusal(With(good, "float opacity", "double opacity")),
-            "has no property 'opacity' of floats, so it holds no splats");
+            "has no property 'opacity' of type float, so it is no file of splats");
   EXPECT_EQ(Refusal(With(good, "float f_rest_8", "float more")),
             "has 8 properties f_rest_*, expected 0, 9, 24 or 45");
   EXPECT_EQ(Refusal(With(good, "vertex 3", "vertex 10000000")),
             "has 10000000 splats, expected at most 4000000");
-  EXPECT_EQ(Refusal(With(good, "vertex 3", "vertex -3")), "has '-3' splats");
+  EXPECT_EQ(Refusal(With(good, "vertex 3", "vertex -3")), "has '-3' splats, expected 1 or more");
 }
 
 TEST_F(SplatFileTest, WhatIsCutShortIsRefused) {
@@ -119,16 +119,27 @@ TEST_F(SplatFileTest, NumbersThatNoSplatHasAreRefused) {
   EXPECT_EQ(Refusal(Bytes(splats)), "splat 2 has a position that is not finite, or far off");
   splats = RandomSplats(3, 0, 4);
   splats.log_scale(0, 1) = 50;
-  EXPECT_EQ(Refusal(Bytes(splats)), "splat 1 has a scale that is not finite, or huge");
+  EXPECT_EQ(Refusal(Bytes(splats)), "splat 1 has a scale that is not a number, or huge");
   splats = RandomSplats(3, 0, 4);
   splats.rotation.col(0).setZero();
   EXPECT_EQ(Refusal(Bytes(splats)), "splat 0 has a rotation that is none");
   splats = RandomSplats(3, 0, 4);
   splats.logit[0] = nan;
-  EXPECT_EQ(Refusal(Bytes(splats)), "splat 0 has an opacity that is not finite");
+  EXPECT_EQ(Refusal(Bytes(splats)), "splat 0 has an opacity that is not a number");
   splats = RandomSplats(3, 0, 4);
   splats.harmonics(0, 0) = nan;
   EXPECT_EQ(Refusal(Bytes(splats)), "splat 0 has a colour that is not finite, or huge");
+}
+
+TEST_F(SplatFileTest, FlatAndOpaqueSplatsMayBeInfinitelySo) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  Splats splats = RandomSplats(2, 0, 4);
+  splats.log_scale(2, 0) = -infinity;
+  splats.logit[1] = infinity;
+  WriteSplats(splats, Path());
+  const Splats read = ReadSplats(Path());
+  EXPECT_EQ(read.log_scale(2, 0), -20);
+  EXPECT_EQ(read.logit[1], 1e4F);
 }
 
 }  // namespace
