@@ -16,6 +16,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -31,6 +32,7 @@ LEVELS = '0,1,2,3'
 DEMOS, DEMO_SEED, SEED = 100, 100, 1
 CHUNK, WIDTH, BATCH, RATE = 40, 192, 64, 2e-4
 PARTICLES = 32
+PROGRAM = pathlib.Path(sys.executable).parent / 'physpring'
 ADAPTER = pathlib.Path(__file__).resolve().parents[1] / 'models/adapters/lerobot_state.json'
 
 
@@ -103,10 +105,11 @@ def train(dataset, output, snapshots):
 def sweeps(task, folder, arguments):
     """A folder of episodes for each snapshot."""
     for snapshot in TASKS[task]:
-        out = folder / 'episodes' / f'{snapshot:06d}'
+        out = episodes(folder, snapshot)
         timed(folder, f'sweep_{snapshot:06d}', lambda: rollout_kept(task, folder, snapshot, out,
                                                                     arguments, '--level', LEVELS))
-    best = max(TASKS[task], key=lambda snapshot: (rate(folder, snapshot, 0), snapshot))
+    judged = merged(*(episodes(folder, snapshot) for snapshot in TASKS[task]))['policies']
+    _, best = max((rates_of(policy)[0], snapshot) for snapshot, policy in zip(TASKS[task], judged))
     out = folder / 'control'
     timed(folder, 'control', lambda: rollout_kept(task, folder, best, out, arguments, '--level', '0',
                                                   '--perturb', '1e-6'))
@@ -119,40 +122,38 @@ def rollout_kept(task, folder, snapshot, out, arguments, *options):
     policy = physpring.lerobot.LeRobotPolicy(folder / 'act' / f'{snapshot:06d}')
     with (physpring.lerobot.PolicyServer(policy, port=arguments.port),
           open(folder / 'rollout.log', 'a') as log):
-        subprocess.run([pathlib.Path(sys.executable).parent / 'physpring', 'rollout', scene(task),
+        subprocess.run([PROGRAM, 'rollout', scene(task),
                         '--policy', f'ws://127.0.0.1:{arguments.port}/{snapshot}',
                         '--policy-adapter', ADAPTER, '--seed', str(SEED), '--threads', '2',
                         '--episodes', str(arguments.episodes), '--states', 'actions', '-o', out,
                         *options], check=True, stderr=log)
 
 
+def episodes(folder, snapshot):
+    return folder / 'episodes' / f'{snapshot:06d}'
+
+
 def scene(task):
     return ADAPTER.parents[1] / 'scenes' / task
 
 
-def verdicts(folder, level):
-    """Success by episode."""
-    return {path.stem: json.loads(path.read_text())['success']
-            for path in sorted(folder.glob(f'level{level}/episode_?????.json'))}
+def merged(*folders):
+    """The report of `physpring merge`: successes, agreements, MMRV and Pearson's correlation."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / 'report.json'
+        subprocess.run([PROGRAM, 'merge', *folders, '--json', path], check=True,
+                       stdout=subprocess.DEVNULL)
+        return json.loads(path.read_text())
 
 
-def rate(folder, snapshot, level):
-    found = verdicts(folder / 'episodes' / f'{snapshot:06d}', level)
-    return sum(found.values()) / len(found)
+def rates_of(policy):
+    """Share of successes by level."""
+    return {level['level']: level['rate'] for level in policy['levels']}
 
 
-def agreement(one, other):
-    return sum(one[key] == other[key] for key in other) / len(other)
-
-
-def mmrv(reference, other):
-    """Mean maximum rank violation (SimplerEnv): by how much the reference tells two policies apart
-    that the other ranks the other way round."""
-    worst = []
-    for i, a in enumerate(reference):
-        worst.append(max(abs(a - b) if (other[i] < other[j]) != (a < b) else 0
-                         for j, b in enumerate(reference)))
-    return float(np.mean(worst))
+def agreements_of(policy):
+    """Share of the episodes with level 0's verdict, by level."""
+    return {one['level']: one['agreement'] for one in policy['comparisons']}
 
 
 def speeds(task, folder, best):
@@ -166,7 +167,7 @@ def speeds(task, folder, best):
         for repeat in range(3):
             for level, rates in found.items():
                 report = folder / 'speed_report.json'
-                subprocess.run([pathlib.Path(sys.executable).parent / 'physpring', 'rollout',
+                subprocess.run([PROGRAM, 'rollout',
                                 scene(task), '--policy', address, '--policy-adapter', ADAPTER,
                                 '--level', level, '--episodes', '3', '--first', str(3 * repeat),
                                 '--json', report], check=True, stdout=subprocess.DEVNULL,
@@ -179,36 +180,33 @@ def speeds(task, folder, best):
 
 def report(task, folder, best):
     snapshots, levels = TASKS[task], [int(level) for level in LEVELS.split(',')]
-    rates = {level: [rate(folder, snapshot, level) for snapshot in snapshots] for level in levels}
-    control = verdicts(folder / 'control', 0)
-    dense = verdicts(folder / 'episodes' / f'{best:06d}', 0)
-    count = len(dense)
-    found = {'task': task, 'episodes': count, 'snapshots': list(snapshots), 'best': best,
-             'rates': rates, 'control_agreement': agreement(dense, control),
-             'seconds': {path.stem: int(path.read_text()) for path in sorted(folder.glob('*.seconds'))},
-             'speed': speeds(task, folder, best), 'levels': {}}
+    found = merged(*(episodes(folder, snapshot) for snapshot in snapshots))
+    control = merged(episodes(folder, best), folder / 'control')
+    speed = {int(level): float(np.median(rates)) for level, rates in
+             speeds(task, folder, best).items()}
+    found.update(best=best, control=control['policy_comparisons'], speed=speed,
+                 seconds={path.stem: int(path.read_text())
+                          for path in sorted(folder.glob('*.seconds'))})
+    (folder / 'report.json').write_text(json.dumps(found, indent=1) + '\n')
+    count = found['policies'][0]['levels'][0]['episodes']
     lines = [f'\n**{task}**, successes of {count}\n', '| iteration | level 0 | 1 | 2 | 3 |',
              '|---|---|---|---|---|']
-    for row, snapshot in enumerate(snapshots):
+    for snapshot, policy in zip(snapshots, found['policies']):
+        rates = rates_of(policy)
         lines.append(f'| {snapshot} | '
-                     + ' | '.join(f'{rates[level][row] * count:.0f}' for level in levels) + ' |')
+                     + ' | '.join(f'{rates[level] * count:.0f}' for level in levels) + ' |')
     lines += ['', '| level | agrees with level 0 (best snapshot) | all snapshots | Pearson | MMRV | '
-              'actions/s | x level 0 |', '|---|---|---|---|---|---|---|']
-    base = np.median(found['speed']['0'])
-    for level in levels:
-        same = [agreement(verdicts(folder / 'episodes' / f'{snapshot:06d}', 0),
-                          verdicts(folder / 'episodes' / f'{snapshot:06d}', level))
-                for snapshot in snapshots]
-        at_best = same[list(snapshots).index(best)]
-        pearson = float(np.corrcoef(rates[0], rates[level])[0, 1])
-        speed = float(np.median(found['speed'][str(level)]))
-        found['levels'][level] = {'agreement': same, 'pearson': pearson,
-                                  'mmrv': mmrv(rates[0], rates[level]), 'actions_per_second': speed}
-        own = (f'{100 * found["control_agreement"]:.0f} % (A/A)' if level == 0 else
-               f'{100 * at_best:.0f} %')
-        lines.append(f'| {level} | {own} | {100 * np.mean(same):.0f} % | {pearson:.3f} | '
-                     f'{mmrv(rates[0], rates[level]):.3f} | {speed:.0f} | {speed / base:.2f} |')
-    (folder / 'report.json').write_text(json.dumps(found, indent=1) + '\n')
+              'actions/s | x level 0 |', '|---|---|---|---|---|---|---|',
+              f'| 0 | {100 * control["policy_comparisons"][0]["agreement"]:.0f} % (A/A) | | | | '
+              f'{speed[0]:.0f} | 1.00 |']
+    agreements = [agreements_of(policy) for policy in found['policies']]
+    for ranking in found['rankings']:
+        level = ranking['level']
+        at_best = agreements[snapshots.index(best)][level]
+        lines.append(f'| {level} | {100 * at_best:.0f} % | '
+                     f'{100 * np.mean([one[level] for one in agreements]):.0f} % | '
+                     f'{ranking["pearson"]:.3f} | {ranking["mmrv"]:.3f} | {speed[level]:.0f} | '
+                     f'{speed[level] / speed[0]:.2f} |')
     return '\n'.join(lines) + '\n'
 
 

@@ -21,12 +21,7 @@ Splats Ball(int count, int degree) {
     return static_cast<float>(from + (to - from) * Uniform(&random));
   };
   Splats splats;
-  splats.degree = degree;
-  splats.position.resize(3, count);
-  splats.log_scale.resize(3, count);
-  splats.rotation.resize(4, count);
-  splats.logit.resize(count);
-  splats.harmonics.resize(3 * HarmonicCount(degree), count);
+  splats.Resize(count, degree);
   // as large as their distance on the ball, two thirds of it across
   const double gap = std::sqrt(4 * std::numbers::pi / count);
   for (int i = 0; i < count; ++i) {

@@ -66,11 +66,7 @@ void PrintCheck(const SplatsArguments& arguments, const Splats& splats, const Po
              arguments.splats, splats.count(), splats.degree, 1e3 * check.median);
   fmt::print("  nine tenths of them, along each axis: {}\n  the twin's nodes: {}\n",
              BoxText(check.low, check.high), BoxText(check.node_low, check.node_high));
-  std::vector<std::string> warnings;
-  for (const std::string& warning : WarningsOf(check)) {
-    warnings.push_back(arguments.splats + ": " + warning);
-  }
-  PrintWarnings(warnings);
+  PrintWarnings(WarningsOf(check, arguments.splats));
 }
 
 void WriteFrames(const SplatsArguments& arguments, const Splats& splats,

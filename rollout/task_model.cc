@@ -124,9 +124,8 @@ std::shared_ptr<const Splats> ReadTaskSplats(const Task& task, int level,
   auto splats =
       std::make_shared<Splats>(Place(ReadSplats(task.splats.file), task.splats.placement));
   const Points nodes = system.position.leftCols(system.node_count());
-  for (const std::string& warning : WarningsOf(CheckPlacement(*splats, nodes))) {
-    warnings->push_back(task.splats.file + ": " + warning);
-  }
+  const auto elsewhere = WarningsOf(CheckPlacement(*splats, nodes), task.splats.file);
+  warnings->insert(warnings->end(), elsewhere.begin(), elsewhere.end());
   return splats;
 }
 

@@ -31,6 +31,9 @@ std::string BoxText(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
 }
 
 Splats Place(const Splats& splats, const Placement& placement) {
+  const bool is_there = placement.scale == 1 && placement.shift.isZero(0) &&
+                        placement.turn.coeffs() == Eigen::Quaterniond::Identity().coeffs();
+  if (is_there) return splats;
   const Eigen::Matrix3f turn = placement.turn.toRotationMatrix().cast<float>();
   const Eigen::Matrix3f f = static_cast<float>(placement.scale) * turn;
   PlacedSplats placed = AsStored(splats);
@@ -70,26 +73,29 @@ PlacementCheck CheckPlacement(const Splats& splats, const Points& nodes) {
   return check;
 }
 
-std::vector<std::string> WarningsOf(const PlacementCheck& check) {
+std::vector<std::string> WarningsOf(const PlacementCheck& check, const std::string& file) {
   std::vector<std::string> warnings;
   const double size = (check.high - check.low).norm();
   const double node_size = (check.node_high - check.node_low).norm();
   if (size > kSameSize * node_size || node_size > kSameSize * size) {
-    warnings.push_back(fmt::format(
-        "the splats are {:.3g} times as large as the twin ({}; the nodes {}): another scale, or "
-        "more than the object; --scale",
-        size / node_size, BoxText(check.low, check.high),
-        BoxText(check.node_low, check.node_high)));
+    warnings.push_back(
+        fmt::format("{}: the splats are {:.3g} times as large as the twin ({}; the nodes {}): "
+                    "another scale, or "
+                    "more than the object; --scale",
+                    file, size / node_size, BoxText(check.low, check.high),
+                    BoxText(check.node_low, check.node_high)));
   }
   if (check.large > 0) {
-    warnings.push_back(fmt::format(
-        "{} splats are wider than half of the twin: cut them away in a viewer", check.large));
+    warnings.push_back(
+        fmt::format("{}: {} splats are wider than half of the twin: cut them away in a viewer",
+                    file, check.large));
   }
   if (check.far > kMostFar) {
     warnings.push_back(fmt::format(
-        "{:.0f} % of the splats are more than {:.0f} mm from all nodes, whose spacing is {:.1f} "
+        "{}: {:.0f} % of the splats are more than {:.0f} mm from all nodes, whose spacing is "
+        "{:.1f} "
         "mm: another place ({}; the nodes {}), or not the object's; --position, --quaternion",
-        100 * check.far, 1e3 * kFarSpacings * check.spacing, 1e3 * check.spacing,
+        file, 100 * check.far, 1e3 * kFarSpacings * check.spacing, 1e3 * check.spacing,
         BoxText(check.low, check.high), BoxText(check.node_low, check.node_high)));
   }
   return warnings;

@@ -37,8 +37,9 @@ PlacementCheck CheckPlacement(const Splats& splats, const Points& nodes);
 // "X Y Z to X Y Z m".
 std::string BoxText(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
-// What a user must know of it: splats in another place or scale than the nodes; empty if none.
-std::vector<std::string> WarningsOf(const PlacementCheck& check);
+// What a user must know of it, beginning with `file`: splats in another place or scale than the
+// nodes; empty if none.
+std::vector<std::string> WarningsOf(const PlacementCheck& check, const std::string& file);
 
 }  // namespace physpring
 

@@ -17,22 +17,21 @@ void TurnHarmonics(const PlacedSplats& placed, Splats* splats) {
   constexpr int kDirections = 32;  // more than there are harmonics
   Eigen::Matrix3Xf directions(3, kDirections);
   Eigen::MatrixXf values(kDirections, count);
+  Eigen::Matrix<float, 1, HarmonicCount(kMostHarmonicDegree)> row;
   for (int k = 0; k < kDirections; ++k) {  // evenly on the sphere, along a spiral
     const float z = 1 - (2 * static_cast<float>(k) + 1) / kDirections;
     const float angle = 2.3999632F * static_cast<float>(k), r = std::sqrt(1 - z * z);
     directions.col(k) << r * std::cos(angle), r * std::sin(angle), z;
-    Eigen::VectorXf row(count);
     Harmonics(degree, Eigen::Vector3f(directions.col(k)), row.data());
-    values.row(k) = row.transpose();
+    values.row(k) = row.head(count);
   }
   const Eigen::MatrixXf inverse = (values.transpose() * values).inverse() * values.transpose();
   Eigen::MatrixXf turned(kDirections, count);
   for (int i = 0; i < splats->count(); ++i) {
     const Eigen::Map<const Eigen::Matrix3f> turn(placed.turn.col(i).data());
     for (int k = 0; k < kDirections; ++k) {
-      Eigen::VectorXf row(count);
       Harmonics(degree, Eigen::Vector3f(turn.transpose() * directions.col(k)), row.data());
-      turned.row(k) = row.transpose();
+      turned.row(k) = row.head(count);
     }
     Eigen::Map<Eigen::MatrixXf> weights(splats->harmonics.col(i).data(), count, 3);
     weights = (inverse * (turned * weights)).eval();

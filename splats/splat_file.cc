@@ -41,15 +41,6 @@ std::vector<std::size_t> PlacesOf(const std::string& path, const PlyHeader& head
   return places;
 }
 
-void Allocate(int count, int degree, Splats* splats) {
-  splats->degree = degree;
-  splats->position.resize(3, count);
-  splats->log_scale.resize(3, count);
-  splats->rotation.resize(4, count);
-  splats->logit.resize(count);
-  splats->harmonics.resize(3 * HarmonicCount(degree), count);
-}
-
 void Put(const std::vector<float>& numbers, int i, Splats* splats) {
   const float* next = numbers.data();
   const auto take = [&next](auto column) {
@@ -107,7 +98,7 @@ Splats ReadSplats(const std::string& path) {
                               header.stride, there));
   }
   Splats splats;
-  Allocate(static_cast<int>(rows), degree, &splats);
+  splats.Resize(static_cast<int>(rows), degree);
   std::vector<float> numbers(places.size());
   for (int i = 0; i < splats.count(); ++i) {
     const char* row = bytes.data() + header.start + i * header.stride;

@@ -3,6 +3,15 @@
 
 namespace physpring {
 
+void Splats::Resize(int count, int highest) {
+  degree = highest;
+  position.resize(3, count);
+  log_scale.resize(3, count);
+  rotation.resize(4, count);
+  logit.resize(count);
+  harmonics.resize(3 * HarmonicCount(degree), count);
+}
+
 Eigen::Matrix3f PlacedSplats::Covariance(int i) const {
   const auto s = covariance.col(i);
   Eigen::Matrix3f full;

@@ -25,6 +25,8 @@ struct Splats {
   Eigen::MatrixXf harmonics;   // 3 HarmonicCount(degree): red of each, green of each, blue of each
 
   int count() const { return static_cast<int>(position.cols()); }
+  // Makes room for `count` splats with harmonics up to `degree`; no number is set.
+  void Resize(int count, int degree);
 };
 
 // Splats in a moment: where they are, how they are stretched, and how they are turned.

@@ -17,12 +17,7 @@ inline Splats RandomSplats(int count, int degree, std::uint64_t seed) {
     return static_cast<float>(from + (to - from) * Uniform(&random));
   };
   Splats splats;
-  splats.degree = degree;
-  splats.position.resize(3, count);
-  splats.log_scale.resize(3, count);
-  splats.rotation.resize(4, count);
-  splats.logit.resize(count);
-  splats.harmonics.resize(3 * HarmonicCount(degree), count);
+  splats.Resize(count, degree);
   for (float& x : splats.position.reshaped()) x = between(-0.6, 0.6);
   for (float& x : splats.log_scale.reshaped()) x = between(-5, -2.5);
   for (float& x : splats.rotation.reshaped()) x = between(-1, 1);
