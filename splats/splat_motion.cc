@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/neighbours.h"
 #include "twin/parallel.h"
 #include "twin/rotation.h"
 
@@ -24,10 +23,15 @@ constexpr int kSplatsAtOnce = 2048;  // splats that a thread takes at once
 SplatMotion::SplatMotion(const Splats& splats, const Points& nodes)
     : splats_(splats), start_(AsStored(splats)), nodes_start_(nodes) {
   const NeighbourSearch search(nodes);
-  for (int i = 0; i < splats.count(); ++i) {
+  Bind(search);
+  Surround(search);
+}
+
+// Each splat to the nodes nearest to it.
+void SplatMotion::Bind(const NeighbourSearch& search) {
+  for (int i = 0; i < splats_.count(); ++i) {
     const std::vector<Neighbour> near =
-        search.Nearest(splats.position.col(i).cast<double>(), kAnchors);
-    distances_.push_back(near.front().distance);
+        search.Nearest(splats_.position.col(i).cast<double>(), kAnchors);
     std::array<Anchor, kAnchors>& anchors = anchors_.emplace_back();
     double sum = 0;
     for (const Neighbour& node : near) sum += 1 / std::pow(node.distance + kNear, 2);
@@ -36,6 +40,11 @@ SplatMotion::SplatMotion(const Splats& splats, const Points& nodes)
       anchors[k] = {near[k].index, static_cast<float>(weight)};
     }
   }
+}
+
+// Each node by the nodes nearest to it.
+void SplatMotion::Surround(const NeighbourSearch& search) {
+  const Points& nodes = nodes_start_;
   for (Eigen::Index node = 0; node < nodes.cols(); ++node) {
     Neighbourhood& about = neighbourhoods_.emplace_back();
     std::vector<double> roots;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "splats/splats.h"
+#include "twin/neighbours.h"
 #include "twin/points.h"
 
 namespace physpring {
@@ -26,9 +27,6 @@ class SplatMotion {
 
   // The splats when the nodes are at `nodes`.
   PlacedSplats At(const Points& nodes, int threads) const;
-
-  // Distance of each splat from its nearest node at the start, m.
-  const std::vector<double>& distances() const { return distances_; }
 
  private:
   static constexpr int kAnchors = 4, kNeighbours = 10;
@@ -44,6 +42,8 @@ class SplatMotion {
     double rigid = 0;         // e s
   };
 
+  void Bind(const NeighbourSearch& search);
+  void Surround(const NeighbourSearch& search);
   Eigen::Matrix3d Deformation(int node, const Points& nodes, Eigen::Matrix3d* rotation) const;
 
   const Splats& splats_;
@@ -51,7 +51,6 @@ class SplatMotion {
   Points nodes_start_;
   std::vector<std::array<Anchor, kAnchors>> anchors_;
   std::vector<Neighbourhood> neighbourhoods_;
-  std::vector<double> distances_;
 };
 
 }  // namespace physpring

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "splats/placement.h"
 #include "splats/rasterise.h"
 #include "splats/settle.h"
 #include "tests/splats/random_splats.h"
@@ -66,7 +67,12 @@ TEST(SplatMotion, OneNodeCarriesSplatsAlong) {
   const SplatMotion motion(splats, Points::Zero(3, 1));
   const PlacedSplats moved = motion.At(Eigen::Vector3d(1, 2, 3), 1);
   ExpectMoved(moved, splats, Eigen::Matrix3f::Identity(), {1, 2, 3}, 1e-5F);
-  EXPECT_NEAR(motion.distances()[0], splats.position.col(0).norm(), 1e-6);
+}
+
+TEST(CheckPlacement, TellsHowFarSplatsAreFromTheirNodes) {
+  const Splats splats = RandomSplats(1, 0, 7);
+  const PlacementCheck check = CheckPlacement(splats, Points::Zero(3, 1));
+  EXPECT_NEAR(check.median, splats.position.col(0).norm(), 1e-6);
 }
 
 // What is written for other programs looks the same: the picture of settled splats is that of the
