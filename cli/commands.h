@@ -13,6 +13,7 @@ void AddTrainCommand(CLI::App& app);
 void AddEvalCommand(CLI::App& app);
 void AddTrackCommand(CLI::App& app);
 void AddExportCommand(CLI::App& app);
+void AddFitSplatsCommand(CLI::App& app);
 void AddDiagnoseCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddRolloutCommand(CLI::App& app);

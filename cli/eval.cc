@@ -7,21 +7,27 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/progress.h"
 #include "cli/warnings.h"
 #include "jobs/evaluation.h"
+#include "jobs/image_evaluation.h"
 #include "report/eval_report.h"
 #include "report/evaluation.h"
 #include "report/picture/page.h"
 #include "twin/atomic_file.h"
 #include "twin/clock_offset.h"
 #include "twin/dataset.h"
+#include "twin/error.h"
 #include "twin/parallel.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -31,6 +37,8 @@ struct EvalArguments {
   std::vector<std::string> recordings;
   std::string json, trajectory, picture;
   EvaluationOptions options;
+  ImageOptions images;
+  std::vector<std::string> predictions;  // NAME=FILE
   int threads = 1;
 };
 
@@ -53,6 +61,50 @@ void ExpectWritable(const EvalArguments& arguments, const std::vector<RecordingE
   ExpectOutputs({arguments.json, arguments.picture, folder ? "" : arguments.trajectory}, inputs);
 }
 
+// "NAME=FILE", of each --prediction.
+std::vector<Baseline> ReadPredictions(const EvalArguments& arguments, const Recording& recording) {
+  std::vector<Baseline> predictions;
+  for (const std::string& word : arguments.predictions) {
+    const std::size_t equals = word.find('=');
+    predictions.push_back(
+        ReadPrediction(word.substr(0, equals), word.substr(equals + 1), recording));
+  }
+  return predictions;
+}
+
+CLI::Validator IsNamedFile() {
+  return CLI::Validator(
+      [](std::string& word) {
+        const std::size_t equals = word.find('=');
+        const bool named = equals != std::string::npos && equals > 0 && equals + 1 < word.size();
+        return named ? std::string() : word + " is not NAME=FILE.npz";
+      },
+      "");
+}
+
+void ComparePictures(const EvalArguments& arguments, Evaluation* evaluation) {
+  const InterruptWatch watch;
+  Progress progress(0);
+  ImageOptions options = arguments.images;
+  options.threads = arguments.threads;
+  options.progress = [&](double part) { progress.Show(part, "pictures"); };
+  EvaluatedRecording& evaluated = evaluation->recordings[0];
+  try {
+    evaluated.images = EvaluateImages(options, &evaluated);
+  } catch (const Stopped&) {
+    Tell("physpring: stopped; nothing was written\n");
+    throw Interrupted{watch.signal()};
+  }
+}
+
+// Pictures, and predictions of other methods, are of one recording.
+void ExpectOneRecording(const EvalArguments& arguments, std::size_t recordings) {
+  const bool of_one = !arguments.images.pictures.empty() || !arguments.predictions.empty();
+  if (recordings == 1 || !of_one) return;
+  throw Error(
+      fmt::format("--images and --prediction are of one recording; there are {}", recordings));
+}
+
 void Run(const EvalArguments& arguments) {
   Evaluation evaluation{arguments.twin,
                         ReadTwin(arguments.twin),
@@ -60,14 +112,18 @@ void Run(const EvalArguments& arguments) {
                         arguments.options.anchor,
                         {}};
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
+  ExpectOneRecording(arguments, entries.size());
   ExpectWritable(arguments, entries);
   WarnIfUnfinished(evaluation.twin, arguments.twin);
   evaluation.recordings.resize(entries.size());
   ParallelFor(static_cast<int>(entries.size()), arguments.threads, [&](int i) {
+    Recording recording = ReadRecordingFor(evaluation.twin, entries[i].path);
+    EvaluationOptions options = arguments.options;
+    options.others = ReadPredictions(arguments, recording);
     evaluation.recordings[i] =
-        EvaluateRecording(evaluation.twin, entries[i],
-                          ReadRecordingFor(evaluation.twin, entries[i].path), arguments.options);
+        EvaluateRecording(evaluation.twin, entries[i], std::move(recording), options);
   });
+  if (!arguments.images.pictures.empty()) ComparePictures(arguments, &evaluation);
 
   std::vector<Recording> recordings;
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {
@@ -112,10 +168,35 @@ void AddEvalCommand(CLI::App& app) {
                    "also predict anew from this frame on, from the state that `track` finds there")
       ->check(WholeNumberBetween(1, std::numeric_limits<int>::max()))
       ->type_name("FRAME");
+  command
+      ->add_option(
+          "--prediction", arguments->predictions,
+          "also judge this prediction of another method: array particles (T, N + M, 3), m; "
+          "may be repeated")
+      ->allow_extra_args(false)
+      ->check(IsNamedFile())
+      ->type_name("NAME=FILE.npz");
+  CLI::Option* images =
+      command
+          ->add_option("--images", arguments->images.pictures,
+                       "also compare pictures with these, which `record --pictures` wrote")
+          ->type_name("DIR");
+  CLI::Option* splats =
+      command
+          ->add_option("--splats", arguments->images.splats,
+                       "the object's splats as in frame 0, which `fit-splats` makes")
+          ->type_name("SPLATS.ply");
+  images->needs(splats);
+  splats->needs(images);
+  command->add_option("--cameras", arguments->images.cameras, "of the pictures; default: all")
+      ->delimiter(',')
+      ->needs(images)
+      ->type_name("NAME,...");
   AddPrecision(command, &arguments->options.predict.single_precision);
   AddNumberOrAuto(command, "--substeps", &arguments->options.predict.substeps,
                   "sub-steps of a frame; auto: stable ones, no longer than in training");
-  AddThreads(command, &arguments->threads, "recordings at the same time; FPS are truest with 1");
+  AddThreads(command, &arguments->threads,
+             "recordings, or pictures, at the same time; FPS are truest with 1");
   command->callback([arguments] { Run(*arguments); });
 }
 

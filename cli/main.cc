@@ -63,6 +63,7 @@ int RunProgram(int argc, char** argv) {
   physpring::AddInteriorCommand(app);
   physpring::AddRegisterCommand(app);
   physpring::AddSplitCommand(app);
+  physpring::AddFitSplatsCommand(app);
   physpring::AddSplatsCommand(app);
   physpring::AddDoctorCommand(app);
   const auto is_named = [&](const CLI::App* command) { return command->check_name(argv[1]); };

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,10 @@
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/picture_words.h"
 #include "cli/warnings.h"
 #include "rollout/mujoco_library.h"
+#include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
 #include "twin/stop_request.h"
@@ -73,18 +77,30 @@ void Run(const std::string& scene, const std::string& output, bool force,
   ExpectOutputs({output}, {scene});
   const OutputLock lock(output);
   ExpectNew(output, force);
+  const PictureOptions& pictures = options.pictures;
+  std::optional<OutputLock> pictures_lock;
+  if (!pictures.folder.empty()) {
+    ExpectNew((std::filesystem::path(pictures.folder) / "cameras.json").string(), force);
+    MakeFolder(pictures.folder);
+    pictures_lock.emplace(pictures.folder);
+  }
   const Recording recording = Simulate(scene, options);
   WriteRecording(recording, output);
   PrintRemarks({&recording, 1});
   fmt::print("{}: {} frames at {} fps, {} points, {} interior, {} controllers, {:.4g} kg\n", output,
              recording.frame_count(), recording.fps, recording.point_count(),
              recording.interior_count(), recording.controller_count(), recording.mass);
+  if (!pictures.folder.empty()) {
+    fmt::print("{}: {} pictures of {} x {} pixels by each of {} cameras\n", pictures.folder,
+               recording.frame_count(), pictures.width, pictures.height, pictures.cameras.size());
+  }
 }
 
 struct RecordArguments {
   std::string scene, output;
   std::vector<std::string> effects;
   bool force = false;
+  std::vector<int> size{640, 480};  // of pictures, pixels
   RecordOptions options;
 };
 
@@ -112,6 +128,34 @@ void AddMeasurementOptions(CLI::App* command, RecordOptions* options) {
       ->capture_default_str();
 }
 
+void AddPictureOptions(CLI::App* command, RecordArguments* arguments) {
+  PictureOptions* pictures = &arguments->options.pictures;
+  CLI::Option* folder =
+      command
+          ->add_option("--pictures", pictures->folder,
+                       "folder for what cameras see in each frame: colours, masks, depths")
+          ->check(NotEmpty())
+          ->type_name("DIR");
+  CLI::Option* cameras = command
+                             ->add_option("--cameras", pictures->cameras,
+                                          "those of the scene that take pictures, none of which "
+                                          "may move")
+                             ->delimiter(',')
+                             ->type_name("NAME,...");
+  folder->needs(cameras);
+  cameras->needs(folder);
+  command->add_option("--size", arguments->size, "of pictures, in pixels")
+      ->expected(2)
+      ->delimiter(',')
+      ->check(WholeNumberBetween(16, 4096))
+      ->needs(folder)
+      ->type_name("WIDTH,HEIGHT")
+      ->default_str("640,480");
+  AddChoice(command, "--quality", &pictures->quality, kQualityWords,
+            "of pictures: without shadows, or as the scene has it")
+      ->needs(folder);
+}
+
 }  // namespace
 
 void AddRecordCommand(CLI::App& app) {
@@ -135,10 +179,13 @@ void AddRecordCommand(CLI::App& app) {
       ->allow_extra_args(false)
       ->check(IsEffect())
       ->type_name("NAME=VALUE");
+  AddPictureOptions(command, arguments.get());
   command->footer(ListEffects());
   command->add_flag("--force", arguments->force, "overwrite a file");
   command->callback([arguments] {
     arguments->options.effects = EffectsOf(arguments->effects);
+    arguments->options.pictures.width = arguments->size[0];
+    arguments->options.pictures.height = arguments->size[1];
     Run(arguments->scene, arguments->output, arguments->force, arguments->options);
   });
 }

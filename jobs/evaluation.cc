@@ -6,10 +6,20 @@
 #include "jobs/fit_report.h"
 #include "tracker/anchor.h"
 #include "twin/evaluate.h"
+#include "twin/npz_fields.h"
 #include "twin/numbering.h"
 #include "twin/regrasp.h"
 
 namespace physpring {
+
+Baseline ReadPrediction(const std::string& name, const std::string& path,
+                        const Recording& recording) {
+  const Npz arrays = ReadNpz(path);
+  NpzFields fields(arrays, path);
+  fields.SetExtent("T", static_cast<std::size_t>(recording.frame_count()));
+  fields.SetExtent("N + M", static_cast<std::size_t>(recording.particle_count()));
+  return {name, name, fields.Frames("particles", "N + M")};
+}
 
 EvaluatedRecording EvaluateRecording(const Twin& twin, const RecordingEntry& entry,
                                      Recording recording, const EvaluationOptions& options) {
@@ -20,7 +30,7 @@ EvaluatedRecording EvaluateRecording(const Twin& twin, const RecordingEntry& ent
   ExpectSameObject(twin, evaluated.recording);
   const Twin held = HeldAsIn(&evaluated.recording, twin);
   WarnOfOddNumbering(held, entry.path, &evaluated.recording);
-  evaluated.result = Evaluate(held, evaluated.recording, options.predict);
+  evaluated.result = Evaluate(held, evaluated.recording, options.predict, options.others);
   if (options.anchor > 0) {
     evaluated.anchored =
         Evaluate(held, AnchoredAt(options.anchor, held, evaluated.recording), options.predict);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "report/evaluation.h"
+#include "twin/baselines.h"
 #include "twin/dataset.h"
 #include "twin/predict.h"
 #include "twin/recording.h"
@@ -17,7 +18,13 @@ namespace physpring {
 struct EvaluationOptions {
   PredictOptions predict;
   int anchor = 0;  // also predict anew from this frame on, as tracked there; 0: no
+  std::vector<Baseline> others = {};  // predictions of other methods, of the one recording
 };
+
+// The prediction of another method: array `particles` (T, N + M, 3) in m, for all frames of the
+// recording. Throws Error, one line that begins with the path.
+Baseline ReadPrediction(const std::string& name, const std::string& path,
+                        const Recording& recording);
 
 // A recording by the twin's clock, from `entry`. Its remarks are in the result's recording.
 EvaluatedRecording EvaluateRecording(const Twin& twin, const RecordingEntry& entry,

@@ -197,6 +197,7 @@ std::string FormatTables(const Evaluation& evaluation) {
   for (const EvaluatedRecording& evaluated : evaluation.recordings) {
     text += fmt::format("{}: {}\n{}", evaluated.path, DescribeFrames(evaluated),
                         FormatRows(RowsOf(evaluated), columns));
+    if (evaluated.images) text += "\n" + FormatImageTable(evaluated);
   }
   const std::size_t recordings = evaluation.recordings.size();
   if (recordings > 1) {
@@ -220,6 +221,7 @@ std::string FormatJson(const Evaluation& evaluation) {
     if (evaluated.anchored) {
       recording["anchored"] = AnchoredAsJson(evaluated, evaluation.anchor);
     }
+    if (evaluated.images) recording["images"] = ImagesAsJson(evaluated);
     json["recordings"].push_back(recording);
   }
   // a file name need not be UTF-8

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "report/image_rows.h"
 #include "twin/dataset.h"
 #include "twin/evaluate.h"
 #include "twin/recording.h"
@@ -21,6 +22,7 @@ struct EvaluatedRecording {
   Recording recording;
   RecordingResult result;
   std::optional<RecordingResult> anchored;  // of the frames from Evaluation::anchor on
+  std::optional<ImageEvaluation> images;    // where pictures are to be compared
 };
 
 struct Evaluation {

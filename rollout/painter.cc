@@ -53,6 +53,17 @@ void PlaceForDrawing(const mjModel& model, mjData* data) {
   mj_tendon(&model, data);
 }
 
+Image FromBottom(const DrawnScene& drawn) {
+  Image image{drawn.width, drawn.height, {}};
+  const std::ptrdiff_t row = 3 * static_cast<std::ptrdiff_t>(drawn.width);
+  image.rgb.reserve(drawn.rgb.size());
+  for (int y = drawn.height - 1; y >= 0; --y) {
+    const auto from = drawn.rgb.begin() + row * y;
+    image.rgb.insert(image.rgb.end(), from, from + row);
+  }
+  return image;
+}
+
 Painter::Painter(const mjModel& model, PictureQuality quality, int width, int height,
                  const SplatLayer* splats)
     : model_(model), splats_(splats), width_(width), height_(height), off_screen_(width, height) {
@@ -89,35 +100,71 @@ void Painter::Mark(const Points& marks) {
   }
 }
 
-DrawnScene Painter::Draw(mjData* data, const mjvCamera& camera, const Points& marks) {
+void Painter::Update(mjData* data, const mjvCamera& camera) {
   mjvCamera view = camera;
+  mjv_updateScene(&model_, data, &option_, nullptr, &view, mjCAT_ALL, &scene_);
+}
+
+DrawnScene Painter::Draw(mjData* data, const mjvCamera& camera, const Points& marks,
+                         bool with_depth) {
   const mjrRect area{0, 0, width_, height_};
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
   DrawnScene drawn{width_, height_, std::vector<unsigned char>(3 * pixels), {}, {}};
-  if (splats_ != nullptr) drawn.depth.resize(pixels);
+  if (with_depth) drawn.depth.resize(pixels);
   CatchMujoco([&] {
-    mjv_updateScene(&model_, data, &option_, nullptr, &view, mjCAT_ALL, &scene_);
+    Update(data, camera);
     Mark(marks);
     mjr_render(area, &scene_, &context_);
-    float* depth = splats_ != nullptr ? drawn.depth.data() : nullptr;
-    mjr_readPixels(drawn.rgb.data(), depth, area, &context_);
+    mjr_readPixels(drawn.rgb.data(), with_depth ? drawn.depth.data() : nullptr, area, &context_);
     drawn.camera = mjv_averageCamera(&scene_.camera[0], &scene_.camera[1]);
   });
   return drawn;
 }
 
 Image Painter::Paint(mjData* data, const mjvCamera& camera, const Points& marks) {
-  const DrawnScene drawn = Draw(data, camera, marks);
-  if (splats_ != nullptr) return splats_->Compose(drawn, *data);
-  // OpenGL begins with the bottom row
-  Image image{width_, height_, {}};
-  const std::size_t row = 3 * static_cast<std::size_t>(width_);
-  image.rgb.reserve(drawn.rgb.size());
+  const DrawnScene drawn = Draw(data, camera, marks, splats_ != nullptr);
+  return splats_ != nullptr ? splats_->Compose(drawn, *data) : FromBottom(drawn);
+}
+
+DrawnScene Painter::PaintWithDepth(mjData* data, const mjvCamera& camera) {
+  return Draw(data, camera, Points(3, 0), true);
+}
+
+std::vector<bool> Painter::PixelsOf(const Belongs& belongs, bool alone, mjData* data,
+                                    const mjvCamera& camera) {
+  const mjrRect area{0, 0, width_, height_};
+  const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
+  std::vector<unsigned char> ids(3 * pixels);
+  std::vector<bool> is_it(1);  // by a geom's number in the picture, which begins at 1
+  CatchMujoco([&] {
+    Update(data, camera);
+    if (alone) {
+      const auto end = std::remove_if(scene_.geoms, scene_.geoms + scene_.ngeom,
+                                      [&](const mjvGeom& geom) { return !belongs(geom); });
+      scene_.ngeom = static_cast<int>(end - scene_.geoms);
+    }
+    for (int i = 0; i < scene_.ngeom; ++i) {
+      const mjvGeom& geom = scene_.geoms[i];
+      if (geom.segid < 0) continue;
+      const std::size_t id = static_cast<std::size_t>(geom.segid) + 1;
+      if (id >= is_it.size()) is_it.resize(id + 1);
+      is_it[id] = belongs(geom);
+    }
+    scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 1;
+    mjr_render(area, &scene_, &context_);
+    scene_.flags[mjRND_SEGMENT] = scene_.flags[mjRND_IDCOLOR] = 0;
+    mjr_readPixels(ids.data(), nullptr, area, &context_);
+  });
+  std::vector<bool> found;
+  found.reserve(pixels);
   for (int y = height_ - 1; y >= 0; --y) {
-    const auto from = drawn.rgb.begin() + static_cast<std::ptrdiff_t>(row) * y;
-    image.rgb.insert(image.rgb.end(), from, from + static_cast<std::ptrdiff_t>(row));
+    for (int x = 0; x < width_; ++x) {
+      const unsigned char* rgb = &ids[3 * (static_cast<std::size_t>(y) * width_ + x)];
+      const std::size_t id = rgb[0] + (std::size_t{rgb[1]} << 8) + (std::size_t{rgb[2]} << 16);
+      found.push_back(id < is_it.size() && is_it[id]);
+    }
   }
-  return image;
+  return found;
 }
 
 }  // namespace physpring

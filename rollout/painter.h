@@ -6,10 +6,12 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "pictures/image.h"
 #include "rollout/off_screen.h"
-#include "rollout/policy.h"
 #include "rollout/splat_layer.h"
 #include "twin/points.h"
 
@@ -32,6 +34,9 @@ mjvCamera OverviewOf(const mjModel& model, const Eigen::Vector3d& low, const Eig
 // Puts everything that is drawn where qpos and the mocap bodies have it.
 void PlaceForDrawing(const mjModel& model, mjData* data);
 
+// OpenGL's picture, which begins with the bottom row.
+Image FromBottom(const DrawnScene& drawn);
+
 class Painter {
  public:
   // The model and the splats, which are drawn instead of skins (null: there are none), live longer.
@@ -46,9 +51,18 @@ class Painter {
   // NaN has none).
   Image Paint(mjData* data, const mjvCamera& camera, const Points& marks = Points(3, 0));
 
+  // The same as OpenGL has it, with depths, without splats.
+  DrawnScene PaintWithDepth(mjData* data, const mjvCamera& camera);
+
+  // Which pixels show what `belongs`, the top row first. `alone`: nothing else is in the way.
+  using Belongs = std::function<bool(const mjvGeom&)>;
+  std::vector<bool> PixelsOf(const Belongs& belongs, bool alone, mjData* data,
+                             const mjvCamera& camera);
+
  private:
+  void Update(mjData* data, const mjvCamera& camera);
   void Mark(const Points& marks);
-  DrawnScene Draw(mjData* data, const mjvCamera& camera, const Points& marks);
+  DrawnScene Draw(mjData* data, const mjvCamera& camera, const Points& marks, bool with_depth);
 
   const mjModel& model_;
   const SplatLayer* splats_;

@@ -3,7 +3,7 @@
 #ifndef PHYSPRING_ROLLOUT_PICTURE_SIZE_H_
 #define PHYSPRING_ROLLOUT_PICTURE_SIZE_H_
 
-#include "rollout/policy.h"
+#include "pictures/image.h"
 
 namespace physpring {
 

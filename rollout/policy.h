@@ -9,15 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "pictures/image.h"
 #include "rollout/task.h"
 #include "twin/points.h"
 
 namespace physpring {
-
-struct Image {
-  int width = 0, height = 0;
-  std::vector<unsigned char> rgb;  // height x width x 3, the top row first
-};
 
 struct Observation {
   int frame = 0;

@@ -140,8 +140,9 @@ void RecordStart(const Points& rest, const std::string& where, RecordingRun* run
 }
 
 // Steps through the scene and records exact points and controllers. With a lag, a frame's
-// controllers are those of so many steps later.
-void RecordMotion(long frames, const std::string& where, RecordingRun* run, Recording* recording) {
+// controllers are those of so many steps later. Pictures are taken with the points.
+void RecordMotion(long frames, const std::string& where, RecordingRun* run, Recording* recording,
+                  PictureRecorder* pictures) {
   // the reference configuration, then the first keyframe's
   run->ComputeKinematics();
   const Points rest = run->AllPositions();
@@ -158,7 +159,10 @@ void RecordMotion(long frames, const std::string& where, RecordingRun* run, Reco
     const bool points = step % steps == 0 && step / steps < frames;
     const bool controllers = later >= 0 && later % steps == 0;
     if (points || controllers) run->PlaceAt(step);
-    if (points) recording->points.push_back(PositionsOf(*run->data, run->soft, run->soft.points));
+    if (points) {
+      recording->points.push_back(PositionsOf(*run->data, run->soft, run->soft.points));
+      if (pictures != nullptr) pictures->Record(static_cast<int>(step / steps), *run->data);
+    }
     if (controllers) {
       recording->controllers.push_back(PositionsOf(*run->data, run->soft, run->soft.controllers));
     }
@@ -196,7 +200,13 @@ Recording RecordScene(const std::string& scene_path, const RecordOptions& option
   const DataPtr data = MakeData(*model);
   RecordingRun run{model.get(), path, soft, effects, data.get()};
   run.lag = std::lround(effects.latency() / model->opt.timestep);
-  RecordMotion(frames, scene_path, &run, &recording);
+  std::optional<PictureRecorder> pictures;
+  if (const PictureOptions& asked = options.pictures; !asked.folder.empty()) {
+    PreparePictures(asked.quality, asked.width, asked.height, model.get());
+    pictures.emplace(*model, soft, asked, scene_path);
+  }
+  RecordMotion(frames, scene_path, &run, &recording, pictures ? &*pictures : nullptr);
+  if (pictures) pictures->Finish(options.fps, frames);
 
   AddOcclusion(options.occlusion, options.fps, SeedFor(Use::kOcclusion, options.seed),
                &recording.points);

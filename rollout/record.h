@@ -5,7 +5,8 @@
 // tendons is what a twin is, too.
 //
 // Motion: mocap_path.h. What is measured and what is held: soft_points.h. Measurement:
-// observation.h. What the recording does not tell: undeclared_effects.h.
+// observation.h. What the recording does not tell: undeclared_effects.h. Pictures:
+// record_pictures.h.
 #ifndef PHYSPRING_ROLLOUT_RECORD_H_
 #define PHYSPRING_ROLLOUT_RECORD_H_
 
@@ -14,6 +15,7 @@
 #include <string>
 
 #include "rollout/effect_keys.h"
+#include "rollout/record_pictures.h"
 #include "twin/recording.h"
 
 namespace physpring {
@@ -26,6 +28,7 @@ struct RecordOptions {
   std::optional<double> duration = {};  // s; default: until the last keyframe
   double fps = 30;                      // frames per second
   SceneEffects effects = {};            // that the recording does not declare
+  PictureOptions pictures = {};         // that cameras take beside
 };
 
 // Simulates the scene from its first keyframe and records it from time 0 on (a first keyframe at a
@@ -37,7 +40,7 @@ struct RecordOptions {
 //
 // Throws Error, one line that begins with `scene_path`: unreadable scene, compiler error, options
 // out of range, a scene that is not one soft body held by mocap bodies or cannot have an effect, an
-// unstable simulation.
+// unstable simulation, pictures that cannot be drawn or written.
 Recording RecordScene(const std::string& scene_path, const RecordOptions& options);
 
 }  // namespace physpring

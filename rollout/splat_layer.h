@@ -8,9 +8,8 @@
 
 #include <vector>
 
-#include "rollout/policy.h"
+#include "pictures/image.h"
 #include "rollout/task_model.h"
-#include "splats/camera.h"
 #include "splats/splat_motion.h"
 
 namespace physpring {
@@ -37,12 +36,6 @@ class SplatLayer {
   const TaskModel& model_;
   SplatMotion motion_;
 };
-
-// OpenGL's camera, as computer vision has it.
-PinholeCamera PinholeOf(const mjvGLCamera& camera, int width, int height);
-
-// Distance along the view [m] of a value of the depth buffer.
-float MetricDepth(float depth, const mjvGLCamera& camera);
 
 }  // namespace physpring
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "rollout/policy.h"
+#include "pictures/image.h"
 #include "twin/draft_file.h"
 
 namespace physpring {

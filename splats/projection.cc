@@ -16,9 +16,7 @@ namespace {
 using Matrix = Eigen::Matrix3f;
 using Vector = Eigen::Vector3f;
 
-constexpr float kBlur = 0.3F;    // pixels^2
-constexpr float kBeyond = 1.3F;  // times half a picture's tangent
-constexpr int kBlock = 4096;     // splats that a thread takes at once
+constexpr int kBlock = 4096;  // splats that a thread takes at once
 
 class Projector {
  public:

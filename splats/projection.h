@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "splats/camera.h"
+#include "pictures/camera.h"
 #include "splats/splats.h"
 
 namespace physpring {
@@ -19,6 +19,8 @@ constexpr float kNearest = 0.2F;
 // Where a splat is fainter, it is left out.
 constexpr float kFaintest = 1.0F / 255;
 constexpr float kMostOpaque = 0.99F;
+constexpr float kBlur = 0.3F;    // pixels^2
+constexpr float kBeyond = 1.3F;  // times half a picture's tangent
 
 struct Ellipse {
   float u = 0, v = 0;                     // its centre, pixels

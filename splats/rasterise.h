@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "splats/camera.h"
+#include "pictures/camera.h"
 #include "splats/splats.h"
 
 namespace physpring {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
-#include "twin/baselines.h"
 #include "twin/hierarchy.h"
 #include "twin/lift.h"
 
@@ -43,7 +43,7 @@ LevelResult EvaluateLevel(const Twin& twin, int level, const Recording& recordin
 }  // namespace
 
 RecordingResult Evaluate(const Twin& twin, const Recording& recording,
-                         const PredictOptions& options) {
+                         const PredictOptions& options, const std::vector<Baseline>& others) {
   ExpectSameObject(twin, recording);
   RecordingResult result;
   if (const TrainedOn* trained = twin.TrainingOn(recording.hash)) {
@@ -53,10 +53,12 @@ RecordingResult Evaluate(const Twin& twin, const Recording& recording,
   for (int level = 0; level < static_cast<int>(twin.levels.size()); ++level) {
     result.levels.push_back(EvaluateLevel(twin, level, recording, options));
   }
-  for (const Baseline& baseline : PredictBaselines(recording, twin.linear)) {
-    result.baselines.push_back({baseline.name, baseline.description,
-                                ComputeParticleErrors(recording, baseline.particles),
-                                PublishedL1(recording, baseline.particles)});
+  std::vector<Baseline> baselines = PredictBaselines(recording, twin.linear);
+  baselines.insert(baselines.end(), others.begin(), others.end());
+  for (Baseline& baseline : baselines) {
+    result.baselines.push_back(
+        {baseline.name, baseline.description, ComputeParticleErrors(recording, baseline.particles),
+         PublishedL1(recording, baseline.particles), std::move(baseline.particles)});
   }
   return result;
 }

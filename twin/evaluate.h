@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/baselines.h"
 #include "twin/metrics.h"
 #include "twin/predict.h"
 #include "twin/recording.h"
@@ -35,6 +36,7 @@ struct BaselineResult {
   std::string name, description;  // Baseline
   FrameErrors errors;
   std::optional<double> published_l1;  // m
+  std::vector<Points> positions;       // T frames of 3 x (N+M), m
 };
 
 struct RecordingResult {
@@ -46,9 +48,10 @@ struct RecordingResult {
   std::vector<BaselineResult> baselines;  // the first one is motionless
 };
 
-// Throws Error as Predict does.
+// `others`: predictions of other methods, which are judged as the baselines are. Throws Error as
+// Predict does.
 RecordingResult Evaluate(const Twin& twin, const Recording& recording,
-                         const PredictOptions& options);
+                         const PredictOptions& options, const std::vector<Baseline>& others = {});
 
 // Means over a range of frames.
 struct ErrorMeans {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "report/picture/base64.h"
+
 namespace physpring {
 namespace {
 
@@ -14,20 +16,13 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostNumbers = 4'000'000;  // about 11 MB in base64
 constexpr std::uint16_t kUnseen = 65535;
 
-std::string Base64(const std::vector<std::uint16_t>& values) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned> bytes;  // little endian
-  for (const unsigned value : values) bytes.insert(bytes.end(), {value & 255, value >> 8});
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    const unsigned group =
-        bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= left ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-    }
+std::string Encoded(const std::vector<std::uint16_t>& values) {
+  std::string bytes;  // little endian
+  for (const unsigned value : values) {
+    bytes += static_cast<char>(value & 255);
+    bytes += static_cast<char>(value >> 8);
   }
-  return text;
+  return Base64(bytes);
 }
 
 // Turns upright coordinates into steps from a corner. What is far outside is brought to the edge.
@@ -48,13 +43,13 @@ class Quantiser {
     for (std::size_t t = 0; t < frames.size(); t += static_cast<std::size_t>(stride)) {
       AddUpright(view_.ToUpright(frames[t]), &values);
     }
-    return Base64(values);
+    return Encoded(values);
   }
 
   std::string EncodeUpright(const Points& upright) const {
     std::vector<std::uint16_t> values;
     AddUpright(upright, &values);
-    return Base64(values);
+    return Encoded(values);
   }
 
  private:
@@ -82,7 +77,7 @@ std::string EncodeSprings(const SpringMassSystem& system) {
       ends.push_back(static_cast<std::uint16_t>(end >> 16));
     }
   }
-  return Base64(ends);
+  return Encoded(ends);
 }
 
 Json ToJson(const FilmLayer& layer, const Quantiser& quantiser, int stride) {

@@ -10,6 +10,7 @@
 #include "report/picture/escape.h"
 #include "report/picture/film_data.h"
 #include "report/picture/film_section.h"
+#include "report/picture/image_strip.h"
 #include "report/picture/overlay.h"
 #include "report/picture/view.h"
 
@@ -107,7 +108,7 @@ std::string FormatLead(const Evaluation& evaluation) {
       "<b>{} mm</b> from the measured points. A body that does not move would be {} mm "
       "from them.</p>\n",
       predicts ? "Prediction" : "Fit", rows[0].nodes, rows[0].springs, track(rows[0]),
-      track(rows.back()));
+      track(rows[evaluation.twin.levels.size()]));  // the first baseline
 }
 
 FilmSection FilmOf(const Evaluation& evaluation, std::size_t drawn) {
@@ -156,6 +157,7 @@ std::string FormatRecording(const EvaluatedRecording& evaluated, std::size_t num
   html += "</p>\n" + FormatOverlay(evaluated, twin, view);
   html += "<h3>Track error over time</h3>\n" + FormatErrorPlot(evaluated);
   if (with_table) html += FormatTable(RowsOf(evaluated));
+  if (evaluated.images) html += FormatImageStrip(evaluated);
   return html + "</section>\n";
 }
 

@@ -147,7 +147,7 @@ const msgpack::object* Find(const msgpack::object& map, std::string_view key) {
 
 // Little-endian numbers as doubles, whatever their alignment.
 template <class Number>
-std::vector<double> Numbers(std::string_view bytes) {
+std::vector<double> NumbersOf(std::string_view bytes) {
   std::vector<double> numbers(bytes.size() / sizeof(Number));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     Number number;
@@ -192,9 +192,9 @@ Eigen::MatrixXd DecodeActions(std::string_view message, int numbers) {
   }
   std::vector<double> values;
   if (Text(*type) == "<f4") {
-    values = Numbers<float>(Text(*data));
+    values = NumbersOf<float>(Text(*data));
   } else if (Text(*type) == "<f8") {
-    values = Numbers<double>(Text(*data));
+    values = NumbersOf<double>(Text(*data));
   } else {
     throw PolicyServerError(fmt::format(
         "the policy server's actions are of type {}, expected <f4 or <f8", Quote(Text(*type))));

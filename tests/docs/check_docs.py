@@ -26,7 +26,7 @@ MOST_WORDS_IN_DECISION = 150
 DECISION_PARTS = ("Status", "Decision", "Against", "Measured")
 
 # Where pages of ours are, besides the root itself.
-FOLDERS = ("bench", "cli", "diagnosis", "docs", "exporter", "jobs", "models", "plugin", "python",
+FOLDERS = ("bench", "cli", "diagnosis", "docs", "exporter", "jobs", "models", "pictures", "plugin", "python",
            "registration", "report", "tracker",
            "rollout", "scripts", "splats", "tests", "third_party", "tools", "trainer", "twin")
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pinhole camera, as computer vision has it: x to the right, y down, z into the picture.
-#ifndef PHYSPRING_SPLATS_CAMERA_H_
-#define PHYSPRING_SPLATS_CAMERA_H_
+#ifndef PHYSPRING_PICTURES_CAMERA_H_
+#define PHYSPRING_PICTURES_CAMERA_H_
 
 #include <Eigen/Core>
 
@@ -21,4 +21,4 @@ struct PinholeCamera {
 
 }  // namespace physpring
 
-#endif  // PHYSPRING_SPLATS_CAMERA_H_
+#endif  // PHYSPRING_PICTURES_CAMERA_H_

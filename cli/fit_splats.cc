@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// physpring fit-splats: pictures of an object -> its splats.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/option_values.h"
+#include "cli/output_files.h"
+#include "cli/progress.h"
+#include "cli/warnings.h"
+#include "pictures/picture_folder.h"
+#include "splats/fit/splat_fit.h"
+#include "splats/splat_file.h"
+#include "twin/error.h"
+#include "twin/output_lock.h"
+#include "twin/stop_request.h"
+
+namespace physpring {
+namespace {
+
+struct FitSplatsArguments {
+  std::string pictures, output;
+  std::vector<std::string> cameras;
+  bool force = false;
+  SplatFitOptions options;
+};
+
+SplatFit Fit(const PictureFolder& pictures, SplatFitOptions options) {
+  const InterruptWatch watch;
+  Progress progress(0);
+  options.progress = [&](int iteration, double loss) {
+    progress.Show(static_cast<double>(iteration) / options.iterations,
+                  fmt::format("iteration {}, loss {:.4f}", iteration, loss));
+  };
+  try {
+    return FitSplats(pictures, options);
+  } catch (const Stopped&) {
+    Tell("physpring: stopped; nothing was written\n");
+    throw Interrupted{watch.signal()};
+  }
+}
+
+void PrintErrors(const PictureFolder& pictures, const SplatFit& fit, const std::string& output) {
+  fmt::print("{:<16} {:>6} {:>9} {:>7}\n", "camera", "IoU", "PSNR, dB", "SSIM");
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < fit.errors.size(); ++i) {
+    const ImageErrors& errors = fit.errors[i];
+    const std::string& name = pictures.cameras()[i].name;
+    fmt::print("{:<16} {:>6.3f} {:>9.2f} {:>7.4f}\n", name, errors.iou, errors.psnr, errors.ssim);
+    constexpr double kPoor = 0.9;
+    if (errors.iou < kPoor) {
+      warnings.push_back(fmt::format(
+          "{}: only {:.0f} % of what camera {} sees, or would see of the splats, is common; are "
+          "its pose and depth right?",
+          output, 100 * errors.iou, name));
+    }
+  }
+  PrintWarnings(warnings);
+}
+
+void Run(const FitSplatsArguments& arguments) {
+  PictureFolder pictures(arguments.pictures);
+  ExpectOutputs({arguments.output}, {});
+  const OutputLock lock(arguments.output);
+  ExpectNew(arguments.output, arguments.force);
+  SplatFitOptions options = arguments.options;
+  for (const std::string& name : arguments.cameras) {
+    options.cameras.push_back(pictures.CameraOf(name));
+  }
+  const SplatFit fit = Fit(pictures, options);
+  WriteSplats(fit.splats, arguments.output);
+  fmt::print("{}: {} splats, {:.2f} mm apart; loss {:.4f} at the start, {:.4f} at the end\n",
+             arguments.output, fit.splats.count(), 1e3 * fit.spacing, fit.first_loss, fit.loss);
+  PrintErrors(pictures, fit, arguments.output);
+}
+
+}  // namespace
+
+void AddFitSplatsCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "fit-splats",
+      "Makes splats (3-D Gaussians) of an object, fitted to what cameras saw of it in one frame.");
+  const auto arguments = std::make_shared<FitSplatsArguments>();
+  arguments->options.threads = AllCores();
+  command
+      ->add_option("pictures", arguments->pictures,
+                   "folder with cameras.json, as `record --pictures` writes it, with depth")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("-o,--output", arguments->output, "splats to write")
+      ->required()
+      ->check(FileNameWith(".ply"))
+      ->type_name("SPLATS.ply");
+  command->add_option("--frame", arguments->options.frame, "that they are fitted to")
+      ->check(WholeNumberBetween(0, 1000000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--cameras", arguments->cameras,
+                   "that they are fitted to; the others are only compared; default: all")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  command->add_option("--count", arguments->options.count, "about so many splats")
+      ->check(WholeNumberBetween(1, 1000000))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--iterations", arguments->options.iterations, "of the optimiser")
+      ->check(WholeNumberBetween(0, 100000))
+      ->type_name("N")
+      ->capture_default_str();
+  AddThreads(command, &arguments->options.threads, "that draw and differentiate");
+  command->add_flag("--force", arguments->force, "overwrite a file");
+  command->callback([arguments] { Run(*arguments); });
+}
+
+}  // namespace physpring
