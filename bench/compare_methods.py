@@ -15,6 +15,7 @@ OUTPUT/tables.md, pages with pictures in OUTPUT/OBJECT/*.html.
 import argparse
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
@@ -109,6 +110,8 @@ def record(once, object_name):
     scene = once.path("scene.xml")
     box = np.stack([points.min((0, 1)), points.max((0, 1))])
     scene.write_text(textured(object_name, box))
+    if not once.path("object.npz").exists():
+        shutil.rmtree(once.path("pictures"), ignore_errors=True)
     once.run("object.npz", "record", scene, "-o", once.path("object.npz"), *noise, "--seed", 11,
              "--pictures", once.path("pictures"), "--cameras", ",".join(CAMERAS),
              "--size", f"{WIDTH},{HEIGHT}", "--force")
@@ -147,7 +150,8 @@ def predict_one(once, name, path, failed):
     method = importlib.import_module(f"methods.{METHODS[name]}")
     begin = time.monotonic()
     try:
-        others = [Recorded(once.path(f"other_{number}.npz")) for number in range(OTHERS)]
+        others = [Recorded(once.path(f"other_{number}.npz"), whole=True)
+                  for number in range(OTHERS)]
         particles = method.predict(Recorded(once.path("object.npz")),
                                    lambda line: print(f"  {line}", flush=True), others)
         particles = particles.numpy().astype(float)

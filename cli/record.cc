@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/picture_words.h"
+#include "cli/progress.h"
 #include "cli/warnings.h"
 #include "rollout/mujoco_library.h"
 #include "twin/atomic_file.h"
@@ -61,8 +61,12 @@ std::string ListEffects() {
 }
 
 // Ends by Interrupted where a signal comes before there is anything to write.
-Recording Simulate(const std::string& scene, const RecordOptions& options) {
+Recording Simulate(const std::string& scene, RecordOptions options) {
   const InterruptWatch watch;
+  Progress progress(0);
+  if (!options.pictures.folder.empty()) {  // otherwise it does not take long
+    options.progress = [&](double part) { progress.Show(part, "pictures"); };
+  }
   try {
     return RecordScene(scene, options);
   } catch (const Stopped&) {
@@ -80,7 +84,6 @@ void Run(const std::string& scene, const std::string& output, bool force,
   const PictureOptions& pictures = options.pictures;
   std::optional<OutputLock> pictures_lock;
   if (!pictures.folder.empty()) {
-    ExpectNew((std::filesystem::path(pictures.folder) / "cameras.json").string(), force);
     MakeFolder(pictures.folder);
     pictures_lock.emplace(pictures.folder);
   }
@@ -133,7 +136,7 @@ void AddPictureOptions(CLI::App* command, RecordArguments* arguments) {
   CLI::Option* folder =
       command
           ->add_option("--pictures", pictures->folder,
-                       "folder for what cameras see in each frame: colours, masks, depths")
+                       "new folder for what cameras see in each frame: colours, masks, depths")
           ->check(NotEmpty())
           ->type_name("DIR");
   CLI::Option* cameras = command

@@ -127,7 +127,9 @@ PictureFolder::PictureFolder(std::string path, double fps, int frames, double de
 
 void PictureFolder::MakeFolders() const {
   std::error_code none;
-  fs::remove(fs::path(path_) / kFile, none);
+  if (fs::exists(fs::path(path_) / kFile, none)) {
+    throw Error(path_ + ": has pictures already; name another folder, or remove it");
+  }
   for (const RecordedCamera& camera : cameras_) {
     MakeFolder(FolderOf("color", camera.name));
     MakeFolder(FolderOf("mask", camera.name));

@@ -36,8 +36,8 @@ class PictureFolder {
   PictureFolder(std::string path, double fps, int frames, double depth_unit,
                 std::vector<RecordedCamera> cameras);
 
-  // Makes the folders of the pictures, which are none of a recording until cameras.json is written,
-  // when all are there.
+  // Makes the folders of the pictures. They are none of a recording until cameras.json is written,
+  // when all are there: so Error is thrown where it is there already, and none are lost.
   void MakeFolders() const;
   void WriteCameras() const;
 

@@ -60,7 +60,7 @@ class CameraThread : public Viewer {
       video_.emplace(options_.video, task_.width * static_cast<int>(shown_.size()), task_.height,
                      task_.rate);
     }
-    if (model.splats) splats_.emplace(model);
+    if (task_.splats.any()) splats_.emplace(model);
     std::promise<void> ready;
     std::future<void> outcome = ready.get_future();
     thread_ = std::thread([this, &ready] { Work(&ready); });

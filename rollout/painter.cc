@@ -69,7 +69,7 @@ Painter::Painter(const mjModel& model, PictureQuality quality, int width, int he
     : model_(model), splats_(splats), width_(width), height_(height), off_screen_(width, height) {
   constexpr int kSpare = 1000;  // geoms besides the model's own
   mjv_defaultOption(&option_);
-  if (splats_ != nullptr) option_.flags[mjVIS_SKIN] = 0;
+  if (splats_ != nullptr && splats_->has_object()) option_.flags[mjVIS_SKIN] = 0;
   mjv_defaultScene(&scene_);
   mjr_defaultContext(&context_);
   mjv_makeScene(&model_, &scene_, model_.ngeom + 2 * model_.ntendon + model_.nsite + kSpare);

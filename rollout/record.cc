@@ -88,6 +88,7 @@ struct RecordingRun {
   const SoftPoints& soft;
   const UndeclaredEffects& effects;
   mjData* data;
+  std::function<void(double part)> progress;
   long lag = 0;  // steps by which the mocap bodies move later than is recorded
 
   double TimeOf(long step) const { return static_cast<double>(step) * model->opt.timestep; }
@@ -162,6 +163,7 @@ void RecordMotion(long frames, const std::string& where, RecordingRun* run, Reco
     if (points) {
       recording->points.push_back(PositionsOf(*run->data, run->soft, run->soft.points));
       if (pictures != nullptr) pictures->Record(static_cast<int>(step / steps), *run->data);
+      if (run->progress) run->progress(static_cast<double>(step) / static_cast<double>(end));
     }
     if (controllers) {
       recording->controllers.push_back(PositionsOf(*run->data, run->soft, run->soft.controllers));
@@ -198,7 +200,7 @@ Recording RecordScene(const std::string& scene_path, const RecordOptions& option
 
   FitTimestep(options.fps, model.get());
   const DataPtr data = MakeData(*model);
-  RecordingRun run{model.get(), path, soft, effects, data.get()};
+  RecordingRun run{model.get(), path, soft, effects, data.get(), options.progress};
   run.lag = std::lround(effects.latency() / model->opt.timestep);
   std::optional<PictureRecorder> pictures;
   if (const PictureOptions& asked = options.pictures; !asked.folder.empty()) {

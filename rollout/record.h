@@ -11,6 +11,7 @@
 #define PHYSPRING_ROLLOUT_RECORD_H_
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,7 @@ struct RecordOptions {
   double fps = 30;                      // frames per second
   SceneEffects effects = {};            // that the recording does not declare
   PictureOptions pictures = {};         // that cameras take beside
+  std::function<void(double part)> progress = {};
 };
 
 // Simulates the scene from its first keyframe and records it from time 0 on (a first keyframe at a

@@ -16,8 +16,11 @@ Points ReferenceNodes(const TaskModel& model) {
 
 }  // namespace
 
-SplatLayer::SplatLayer(const TaskModel& model)
-    : model_(model), motion_(*model.splats, ReferenceNodes(model)) {}
+SplatLayer::SplatLayer(const TaskModel& model) : model_(model) {
+  const TaskSplats& splats = model.task->splats;
+  if (splats.object) motion_.emplace(*splats.object, ReferenceNodes(model));
+  if (splats.background) still_ = AsStored(*splats.background);
+}
 
 Image SplatLayer::Compose(const DrawnScene& scene, const mjData& data) const {
   const std::size_t pixels = static_cast<std::size_t>(scene.width) * scene.height;
@@ -32,8 +35,15 @@ Image SplatLayer::Compose(const DrawnScene& scene, const mjData& data) const {
       }
     }
   }
-  return BytesOf(Rasterise(motion_.At(model_.NodesIn(data), 1),
-                           PinholeOf(scene.camera, scene.width, scene.height), backdrop, 1));
+  PlacedSplats moved;
+  std::vector<const PlacedSplats*> groups;
+  if (motion_) {
+    moved = motion_->At(model_.NodesIn(data), 1);
+    groups.push_back(&moved);
+  }
+  if (still_) groups.push_back(&*still_);
+  return BytesOf(
+      Rasterise(groups, PinholeOf(scene.camera, scene.width, scene.height), backdrop, 1));
 }
 
 }  // namespace physpring

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Splats in MuJoCo's pictures: before and behind what MuJoCo draws, by its depth buffer, so that
-// grippers hide them and they hide grippers. They move with the nodes of a task's object.
+// grippers hide them and they hide grippers. Those of a task's object move with its nodes, those of
+// the background stand.
 #ifndef PHYSPRING_ROLLOUT_SPLAT_LAYER_H_
 #define PHYSPRING_ROLLOUT_SPLAT_LAYER_H_
 
 #include <mujoco/mujoco.h>
 
+#include <optional>
 #include <vector>
 
 #include "pictures/image.h"
@@ -24,17 +26,20 @@ struct DrawnScene {
 
 class SplatLayer {
  public:
-  // Of a model that has splats, which lives longer.
+  // Of a model whose task has splats, which lives longer.
   explicit SplatLayer(const TaskModel& model);
   SplatLayer(const SplatLayer&) = delete;
   SplatLayer& operator=(const SplatLayer&) = delete;
+
+  bool has_object() const { return motion_.has_value(); }
 
   // Where something is drawn as the nodes of `data` have it.
   Image Compose(const DrawnScene& scene, const mjData& data) const;
 
  private:
   const TaskModel& model_;
-  SplatMotion motion_;
+  std::optional<SplatMotion> motion_;  // of the object
+  std::optional<PlacedSplats> still_;  // the background
 };
 
 }  // namespace physpring

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "rollout/task_fields.h"
+#include "splats/placement.h"
+#include "splats/splat_file.h"
 #include "twin/error.h"
 #include "twin/quote.h"
 
@@ -168,11 +170,27 @@ void ReadCameras(const JsonFields& fields, Task* task) {
   task->height = static_cast<int>(size[1]);
 }
 
-SplatOptions ReadTaskSplats(const JsonFields& fields, const std::string& folder) {
-  fields.ExpectOnly({"file", "scale", "pose"});
+// The splats of `file`, where "scale" and "pose" bring them.
+std::shared_ptr<const Splats> ReadPlacedSplats(const JsonFields& fields, const std::string& file) {
   const Pose pose = fields.Has("pose") ? ReadPose(fields.Object("pose")) : Pose{};
-  return {FileOf(fields, "file", folder, fields.Text("file")),
-          {PositiveNumberOr(fields, "scale", 1, 1e6), pose.orientation, pose.position}};
+  const Placement placement{PositiveNumberOr(fields, "scale", 1, 1e6), pose.orientation,
+                            pose.position};
+  return std::make_shared<Splats>(Place(ReadSplats(file), placement));
+}
+
+TaskSplats ReadTaskSplats(const JsonFields& fields, const std::string& folder) {
+  fields.ExpectOnly({"file", "scale", "pose", "background"});
+  TaskSplats splats;
+  if (fields.Has("background")) {
+    const JsonFields background = fields.Object("background");
+    background.ExpectOnly({"file", "scale", "pose"});
+    splats.background =
+        ReadPlacedSplats(background, FileOf(background, "file", folder, background.Text("file")));
+    if (!fields.Has("file")) return splats;  // the object has its skin
+  }
+  splats.file = FileOf(fields, "file", folder, fields.Text("file"));
+  splats.object = ReadPlacedSplats(fields, splats.file);
+  return splats;
 }
 
 std::string NameOfFolder(const std::string& folder) {

@@ -7,11 +7,12 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "rollout/pose.h"
-#include "splats/placement.h"
+#include "splats/splats.h"
 #include "twin/twin.h"
 
 namespace physpring {
@@ -55,10 +56,13 @@ struct SuccessOptions {
   std::string numbers = "{}";  // the rule's own, a JSON object
 };
 
-// What the object looks like, instead of its skin (splats/splats.h).
-struct SplatOptions {
-  std::string file;     // empty: none
-  Placement placement;  // from the file's frame to the twin's
+// What is drawn as splats (splats/splats.h).
+struct TaskSplats {
+  std::string file;                          // of the object
+  std::shared_ptr<const Splats> object;      // instead of its skin, in the twin's frame; null: none
+  std::shared_ptr<const Splats> background;  // a room, in the world; null: none
+
+  bool any() const { return object || background; }
 };
 
 struct Task {
@@ -78,7 +82,7 @@ struct Task {
   std::string policy;                // the scripted policy, see policies/registry.h
   std::string policy_adapter;        // file, for policy servers; empty: plain
   std::vector<std::string> sensors;  // names in the scene, for policies that ask for them
-  SplatOptions splats;
+  TaskSplats splats;
   std::vector<std::string> cameras;  // names in the scene; the first one makes the video
   int width = 640, height = 480;     // pixels, of what cameras see
 };

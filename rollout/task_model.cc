@@ -9,7 +9,6 @@
 #include "rollout/mujoco_log.h"
 #include "rollout/scene_spec.h"
 #include "splats/placement.h"
-#include "splats/splat_file.h"
 #include "twin/error.h"
 #include "twin/hierarchy.h"
 #include "twin/npz.h"
@@ -116,17 +115,13 @@ void FindRobot(const std::string& where, TaskModel* made) {
   }
 }
 
-// The task's splats, in the frame of the twin.
-std::shared_ptr<const Splats> ReadTaskSplats(const Task& task, int level,
-                                             std::vector<std::string>* warnings) {
-  if (task.splats.file.empty()) return nullptr;
+// Whether the object's splats are where its nodes are.
+void CheckSplats(const Task& task, int level, std::vector<std::string>* warnings) {
+  if (!task.splats.object) return;
   const SpringMassSystem& system = LevelOf(task.twin, level).system;
-  auto splats =
-      std::make_shared<Splats>(Place(ReadSplats(task.splats.file), task.splats.placement));
   const Points nodes = system.position.leftCols(system.node_count());
-  const auto elsewhere = WarningsOf(CheckPlacement(*splats, nodes), task.splats.file);
+  const auto elsewhere = WarningsOf(CheckPlacement(*task.splats.object, nodes), task.splats.file);
   warnings->insert(warnings->end(), elsewhere.begin(), elsewhere.end());
-  return splats;
 }
 
 std::string Numbers(const Pose& pose) {
@@ -172,7 +167,7 @@ TaskModel MakeTaskModel(const Task& task, int level, std::vector<std::string>* w
     made.sensors.push_back(Find(*made.model, mjOBJ_SENSOR, sensor, where));
   }
   for (const std::string& camera : task.cameras) Find(*made.model, mjOBJ_CAMERA, camera, where);
-  made.splats = ReadTaskSplats(task, level, warnings);
+  CheckSplats(task, level, warnings);
   made.success = MakeSuccessRule(task);
   return made;
 }

@@ -10,7 +10,6 @@
 #include "rollout/scene.h"
 #include "rollout/success_rule.h"
 #include "rollout/task.h"
-#include "splats/splats.h"
 
 namespace physpring {
 
@@ -31,8 +30,6 @@ struct TaskModel {
   std::vector<int> actuators;
   std::vector<int> joint_qpos;  // where the actuators' joints are in qpos; -1: drives no joint
   std::vector<int> sensors;     // of Task::sensors
-
-  std::shared_ptr<const Splats> splats;  // in the twin's frame; null: none
 
   int success_body = 0;
   std::unique_ptr<const SuccessRule> success;

@@ -140,16 +140,18 @@ void SortByDepth(std::vector<Ellipse>* ellipses) {
 
 }  // namespace
 
-std::vector<Ellipse> Project(const PlacedSplats& splats, const PinholeCamera& camera, int threads) {
-  const Projector projector(splats, camera);
-  const int count = static_cast<int>(splats.position.cols());
-  const int blocks = (count + kBlock - 1) / kBlock;
-  std::vector<std::vector<Ellipse>> seen(static_cast<std::size_t>(blocks));
-  ParallelFor(blocks, threads, [&](int block) {
-    projector.Add(block * kBlock, std::min(count, (block + 1) * kBlock), &seen[block]);
-  });
+std::vector<Ellipse> Project(SplatGroups groups, const PinholeCamera& camera, int threads) {
   std::vector<Ellipse> all;
-  for (const auto& part : seen) all.insert(all.end(), part.begin(), part.end());
+  for (const PlacedSplats* splats : groups) {
+    const Projector projector(*splats, camera);
+    const int count = static_cast<int>(splats->position.cols());
+    const int blocks = (count + kBlock - 1) / kBlock;
+    std::vector<std::vector<Ellipse>> seen(static_cast<std::size_t>(blocks));
+    ParallelFor(blocks, threads, [&](int block) {
+      projector.Add(block * kBlock, std::min(count, (block + 1) * kBlock), &seen[block]);
+    });
+    for (const auto& part : seen) all.insert(all.end(), part.begin(), part.end());
+  }
   SortByDepth(&all);
   return all;
 }

@@ -32,8 +32,9 @@ struct Ellipse {
   float red = 0, green = 0, blue = 0;     // 0 to about 1
 };
 
-// The ellipses that reach into the picture, sorted by depth; those of one depth as the splats are.
-std::vector<Ellipse> Project(const PlacedSplats& splats, const PinholeCamera& camera, int threads);
+// The ellipses of all groups that reach into the picture, sorted by depth; those of one depth as
+// the splats are.
+std::vector<Ellipse> Project(SplatGroups groups, const PinholeCamera& camera, int threads);
 
 }  // namespace physpring
 

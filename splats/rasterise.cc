@@ -91,7 +91,13 @@ class Rasteriser {
 
 SplatPicture Rasterise(const PlacedSplats& splats, const PinholeCamera& camera,
                        const Backdrop& backdrop, int threads) {
-  const std::vector<Ellipse> ellipses = Project(splats, camera, threads);
+  const PlacedSplats* const group = &splats;
+  return Rasterise({&group, 1}, camera, backdrop, threads);
+}
+
+SplatPicture Rasterise(SplatGroups groups, const PinholeCamera& camera, const Backdrop& backdrop,
+                       int threads) {
+  const std::vector<Ellipse> ellipses = Project(groups, camera, threads);
   return Rasteriser(ellipses, camera, backdrop).Draw(threads);
 }
 

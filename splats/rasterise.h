@@ -27,6 +27,8 @@ struct SplatPicture {
 
 // Splats that are farther than the backdrop's depth at a pixel are behind it there. The same bits
 // for any number of threads.
+SplatPicture Rasterise(SplatGroups groups, const PinholeCamera& camera, const Backdrop& backdrop,
+                       int threads);
 SplatPicture Rasterise(const PlacedSplats& splats, const PinholeCamera& camera,
                        const Backdrop& backdrop, int threads);
 

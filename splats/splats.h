@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <span>
 
 namespace physpring {
 
@@ -43,6 +44,9 @@ struct PlacedSplats {
     covariance.col(i) << s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2);
   }
 };
+
+// Splats that are seen together.
+using SplatGroups = std::span<const PlacedSplats* const>;
 
 // As they are stored: S = R diag(exp(2 log_scale)) R^T.
 PlacedSplats AsStored(const Splats& splats);

@@ -123,7 +123,8 @@ def convert(args):
     case = Case(args.case, bool(settings.reverse_z) if settings.reverse_z is not None else True)
     if settings.reverse_z is None:
         notes.append("nothing says which way z points: down is assumed (--no-reverse-z)")
-    (args.output / "cameras.json").unlink(missing_ok=True)
+    if (args.output / "cameras.json").exists():
+        raise Error(f"{args.output}: has pictures already; name another folder, or remove it")
     for camera in range(len(case.poses)):
         for frame in range(case.frames):
             name = f"{camera}/{frame:05}.png"

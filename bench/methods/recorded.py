@@ -8,7 +8,7 @@ import torch
 class Recorded:
     """A recording as tensors. N points, M interior particles, C controllers, T frames."""
 
-    def __init__(self, path):
+    def __init__(self, path, whole=False):
         file = np.load(path)
         tensor = lambda array: torch.tensor(np.asarray(array), dtype=torch.float32)  # noqa: E731
         self.points = tensor(file["points"])  # (T,N,3) m, NaN: not seen
@@ -21,6 +21,8 @@ class Recorded:
         self.frames = len(self.points)
         self.train_frames = (int(file["train_frames"]) if "train_frames" in file
                              else round(0.7 * self.frames))
+        if whole:  # all frames are for fitting
+            self.train_frames = self.frames
 
     @property
     def start(self):

@@ -26,6 +26,9 @@ SPLAT = ('ply\nformat binary_little_endian 1.0\nelement vertex 1\n' +
          ''.join(f'property float {name}\n' for name in NAMES) + 'end_header\n').encode()
 SPLAT += struct.pack('<14f', *[0.0] * 7, *[-5.0] * 3, 1.0, *[0.0] * 3)
 
+CAMERA = '<camera name="above" pos="0 0 0.8" xyaxes="1 0 0 0 1 0"/>'
+PICTURES = ['--cameras', 'above', '--size', '64,48', '--duration', '0.07']
+
 
 class Case:
     """A command whose outputs are all in one folder."""
@@ -48,6 +51,10 @@ def make_inputs(folder, program, make_small_twin, make_small_task):
         subprocess.run([program, 'record', demo / f'{scene}.xml', '-o', folder / f'{scene}.npz',
                         '--duration', '0.3', '--fps', '50'], check=True, capture_output=True)
     (folder / 'box.obj').write_text(BOX)
+    seen = (demo / 'cloth.xml').read_text().replace('</worldbody>', CAMERA + '</worldbody>')
+    (folder / 'seen.xml').write_text(seen)
+    subprocess.run([program, 'record', folder / 'seen.xml', '-o', folder / 'seen.npz', *PICTURES,
+                    '--pictures', folder / 'seen'], check=True, capture_output=True)
     (folder / 'one.ply').write_bytes(SPLAT)
     held = folder / "<b>held & 'back'.npz"
     held.rename(folder / 'held.npz')
@@ -64,6 +71,8 @@ def cases(inputs):
         Case('export', ['export', inputs / 'small.twin.npz', '-o', '{out}/model'], ['--force']),
         Case('record', ['record', REPOSITORY / 'models/demo/cord.xml', '-o', '{out}/cord.npz',
                         '--duration', '0.1', '--fps', '50'], ['--force']),
+        Case('fit-splats', ['fit-splats', inputs / 'seen', '-o', '{out}/seen.ply', '--count', '50',
+                            '--iterations', '20'], ['--force']),
         Case('interior', ['interior', rope, '--mesh', inputs / 'box.obj', '--spacing', '0.008', '-o',
                           '{out}/filled.npz'], ['--force']),
         Case('register', ['register', inputs / 'clouds.npz', '--points', '12', '-o',

@@ -59,10 +59,10 @@ TEST(PictureFolder, IsNoneUntilAllIsWritten) {
   const TemporaryFolder folder;
   const PictureFolder written(folder.path(), 30, 1, 0, {SomeCamera("front")});
   written.MakeFolders();
+  EXPECT_THROW(PictureFolder{folder.path()}, Error);
   written.WriteCameras();
   EXPECT_FALSE(PictureFolder(folder.path()).has_depth());
-  written.MakeFolders();  // another recording begins
-  EXPECT_THROW(PictureFolder{folder.path()}, Error);
+  EXPECT_THROW(written.MakeFolders(), Error);  // another recording would be lost
 }
 
 struct BadFile {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rollout/gl_camera.h"
 #include "rollout/off_screen.h"
 #include "rollout/painter.h"
 #include "rollout/plugin_library.h"
@@ -30,10 +31,11 @@ class SplatLayerTest : public ::testing::Test {
  protected:
   SplatLayerTest() {
     LoadPluginLibrary(PHYSPRING_PLUGIN);
+    const Twin twin = ReadTask(task_.path()).twin;
+    const SpringMassSystem& system = twin.levels[0].system;
+    WriteSplats(Green(system.position.leftCols(system.node_count())), task_.File("block.ply"));
     task_.Change(R"("settle": 5)", R"("settle": 5, "splats": {"file": "block.ply"})");
     read_ = ReadTask(task_.path());
-    const SpringMassSystem& system = read_.twin.levels[0].system;
-    WriteSplats(Green(system.position.leftCols(system.node_count())), task_.File("block.ply"));
   }
 
   void SetUp() override {
@@ -127,29 +129,51 @@ TEST_F(SplatLayerTest, WhatIsNearerHidesThemAndTheyHideWhatIsFarther) {
   marks.col(0) = middle;  // in the block
   EXPECT_TRUE(IsGreen(Colour(Paint(&splats, marks), pixel)));
   // it is seen where the splats are clear
-  Splats clear = *model_.splats;
+  Splats clear = *read_.splats.object;
   clear.logit.setConstant(-9);
-  model_.splats = std::make_shared<Splats>(clear);
+  read_.splats.object = std::make_shared<Splats>(clear);
   const SplatLayer no_splats(model_);
   EXPECT_NE(Colour(Paint(&no_splats, marks), pixel),
             Colour(Paint(&no_splats, Points(3, 0)), pixel));
 }
 
 TEST_F(SplatLayerTest, SplatsElsewhereAreAWarning) {
+  Splats elsewhere = *read_.splats.object;
+  elsewhere.position.row(0).array() += 3;
   Task task = read_;
-  task.splats.placement.shift = {3, 0, 0};
+  task.splats.object = std::make_shared<Splats>(elsewhere);
   std::vector<std::string> warnings;
   MakeTaskModel(task, 0, &warnings);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("another place"), std::string::npos) << warnings[0];
 }
 
+// A background of one large splat, behind all that is in the scene.
+TEST_F(SplatLayerTest, ABackgroundIsBehindWithTheObjectBeforeIt) {
+  const Image before = Paint(nullptr, Points(3, 0));
+  const Eigen::Vector3d middle = simulation_->Nodes().rowwise().mean();
+  const Eigen::Vector3d along = (middle - camera_.centre()).normalized();
+  Splats wall = Green(Points(middle + 0.05 * along));
+  wall.log_scale.setConstant(std::log(0.3F));
+  wall.harmonics = Eigen::Vector3f(-1.7F, -1.7F, 1.7F);
+  read_.splats.background = std::make_shared<Splats>(wall);
+  const auto is_blue = [](const Eigen::Vector3i& rgb) { return rgb[2] > rgb[1] + 80; };
+  const SplatLayer both(model_);
+  EXPECT_TRUE(both.has_object());
+  const Image image = Paint(&both, Points(3, 0));
+  EXPECT_TRUE(IsGreen(Colour(image, PixelOf(middle))));
+  const Eigen::Vector2d above = PixelOf(middle + 0.1 * Eigen::Vector3d::UnitZ());
+  EXPECT_FALSE(is_blue(Colour(before, above)));
+  EXPECT_TRUE(is_blue(Colour(image, above)));
+  read_.splats.object = nullptr;
+  const SplatLayer alone(model_);
+  EXPECT_FALSE(alone.has_object());
+}
+
 TEST_F(SplatLayerTest, AFileThatIsNotThereIsNamed) {
-  Task task = read_;
-  task.splats.file = task_.File("none.ply");
-  std::vector<std::string> warnings;
+  task_.Change("block.ply", "none.ply");
   try {
-    MakeTaskModel(task, 0, &warnings);
+    ReadTask(task_.path());
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("none.ply"), std::string::npos);
