@@ -2,11 +2,15 @@
 // physpring eval: a twin and recordings of its object -> how far it is from them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,10 +31,18 @@
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/parallel.h"
+#include "twin/plain_name.h"
+#include "twin/quote.h"
 #include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
+
+// Keys of the report, beside which a prediction has its own.
+constexpr std::string_view kTakenNames[] = {
+    "twin",     "precision", "levels",  "recordings",     "motionless", "rigid",
+    "linear",   "file",      "frames",  "trained_on",     "anchored",   "images",
+    "pictures", "splats",    "cameras", "first_predicted"};
 
 struct EvalArguments {
   std::string twin;
@@ -38,7 +50,7 @@ struct EvalArguments {
   std::string json, trajectory, picture;
   EvaluationOptions options;
   ImageOptions images;
-  std::vector<std::string> predictions;  // NAME=FILE
+  std::map<std::string, std::string> predictions;  // file of each name
   int threads = 1;
 };
 
@@ -58,28 +70,38 @@ void ExpectWritable(const EvalArguments& arguments, const std::vector<RecordingE
   std::error_code missing;
   const bool folder =
       entries.size() > 1 || std::filesystem::is_directory(arguments.trajectory, missing);
+  if (!arguments.images.pictures.empty()) {
+    inputs.push_back(arguments.images.splats);
+    inputs.push_back((std::filesystem::path(arguments.images.pictures) / "cameras.json").string());
+  }
+  for (const auto& [name, file] : arguments.predictions) inputs.push_back(file);
   ExpectOutputs({arguments.json, arguments.picture, folder ? "" : arguments.trajectory}, inputs);
 }
 
-// "NAME=FILE", of each --prediction.
 std::vector<Baseline> ReadPredictions(const EvalArguments& arguments, const Recording& recording) {
   std::vector<Baseline> predictions;
-  for (const std::string& word : arguments.predictions) {
-    const std::size_t equals = word.find('=');
-    predictions.push_back(
-        ReadPrediction(word.substr(0, equals), word.substr(equals + 1), recording));
+  for (const auto& [name, file] : arguments.predictions) {
+    predictions.push_back(ReadPrediction(name, file, recording));
   }
   return predictions;
 }
 
-CLI::Validator IsNamedFile() {
-  return CLI::Validator(
-      [](std::string& word) {
-        const std::size_t equals = word.find('=');
-        const bool named = equals != std::string::npos && equals > 0 && equals + 1 < word.size();
-        return named ? std::string() : word + " is not NAME=FILE.npz";
-      },
-      "");
+// "NAME=FILE", of a --prediction.
+void AddPrediction(const std::string& word, EvalArguments* arguments) {
+  const auto fail = [](const std::string& what) {
+    throw CLI::ValidationError("--prediction", what);
+  };
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos || equals + 1 == word.size())
+    fail(word + " is not NAME=FILE.npz");
+  const std::string name = word.substr(0, equals);
+  if (!IsPlainName(name)) fail(fmt::format("{} is no name: use {}", Quote(name), kPlainName));
+  if (std::find(std::begin(kTakenNames), std::end(kTakenNames), name) != std::end(kTakenNames)) {
+    fail(name + " means something else in the report");
+  }
+  if (!arguments->predictions.emplace(name, word.substr(equals + 1)).second) {
+    fail(name + " is given twice");
+  }
 }
 
 void ComparePictures(const EvalArguments& arguments, Evaluation* evaluation) {
@@ -169,12 +191,14 @@ void AddEvalCommand(CLI::App& app) {
       ->check(WholeNumberBetween(1, std::numeric_limits<int>::max()))
       ->type_name("FRAME");
   command
-      ->add_option(
-          "--prediction", arguments->predictions,
-          "also judge this prediction of another method: array particles (T, N + M, 3), m; "
-          "may be repeated")
+      ->add_option_function<std::vector<std::string>>(
+          "--prediction",
+          [arguments](const std::vector<std::string>& words) {
+            for (const std::string& word : words) AddPrediction(word, arguments.get());
+          },
+          "also judge this prediction of another method: array particles (T, N + M, 3), m; may be "
+          "repeated")
       ->allow_extra_args(false)
-      ->check(IsNamedFile())
       ->type_name("NAME=FILE.npz");
   CLI::Option* images =
       command

@@ -2,8 +2,8 @@
 // physpring fit-splats: pictures of an object -> its splats.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,27 +46,41 @@ SplatFit Fit(const PictureFolder& pictures, SplatFitOptions options) {
   }
 }
 
-void PrintErrors(const PictureFolder& pictures, const SplatFit& fit, const std::string& output) {
+void PrintErrors(const PictureFolder& pictures, const SplatFit& fit) {
   fmt::print("{:<16} {:>6} {:>9} {:>7}\n", "camera", "IoU", "PSNR, dB", "SSIM");
-  std::vector<std::string> warnings;
   for (std::size_t i = 0; i < fit.errors.size(); ++i) {
-    const ImageErrors& errors = fit.errors[i];
     const std::string& name = pictures.cameras()[i].name;
-    fmt::print("{:<16} {:>6.3f} {:>9.2f} {:>7.4f}\n", name, errors.iou, errors.psnr, errors.ssim);
-    constexpr double kPoor = 0.9;
-    if (errors.iou < kPoor) {
-      warnings.push_back(fmt::format(
-          "{}: only {:.0f} % of what camera {} sees, or would see of the splats, is common; are "
-          "its pose and depth right?",
-          output, 100 * errors.iou, name));
+    if (const std::optional<ImageErrors>& errors = fit.errors[i]) {
+      fmt::print("{:<16} {:>6.3f} {:>9.2f} {:>7.4f}\n", name, errors->iou, errors->psnr,
+                 errors->ssim);
+    } else {
+      fmt::print("{:<16} does not see the object\n", name);
     }
   }
-  PrintWarnings(warnings);
+}
+
+std::vector<std::string> WarningsOf(const FitSplatsArguments& arguments,
+                                    const PictureFolder& pictures, const SplatFit& fit) {
+  std::vector<std::string> warnings;
+  constexpr double kFew = 0.7, kPoor = 0.9;
+  if (fit.splats.count() < kFew * arguments.options.count) {
+    warnings.push_back(
+        fmt::format("{}: has {} splats, not {}: the object has too few pixels in these pictures",
+                    arguments.output, fit.splats.count(), arguments.options.count));
+  }
+  for (std::size_t i = 0; i < fit.errors.size(); ++i) {
+    if (!fit.errors[i] || fit.errors[i]->iou >= kPoor) continue;
+    warnings.push_back(fmt::format(
+        "{}: only {:.0f} % of what camera {} sees, or would see of the splats, is common: too few "
+        "splats or iterations, or a wrong pose or depth",
+        arguments.output, 100 * fit.errors[i]->iou, pictures.cameras()[i].name));
+  }
+  return warnings;
 }
 
 void Run(const FitSplatsArguments& arguments) {
   PictureFolder pictures(arguments.pictures);
-  ExpectOutputs({arguments.output}, {});
+  ExpectOutputs({arguments.output}, {arguments.pictures});
   const OutputLock lock(arguments.output);
   ExpectNew(arguments.output, arguments.force);
   SplatFitOptions options = arguments.options;
@@ -77,7 +91,8 @@ void Run(const FitSplatsArguments& arguments) {
   WriteSplats(fit.splats, arguments.output);
   fmt::print("{}: {} splats, {:.2f} mm apart; loss {:.4f} at the start, {:.4f} at the end\n",
              arguments.output, fit.splats.count(), 1e3 * fit.spacing, fit.first_loss, fit.loss);
-  PrintErrors(pictures, fit, arguments.output);
+  PrintErrors(pictures, fit);
+  PrintWarnings(WarningsOf(arguments, pictures, fit));
 }
 
 }  // namespace
@@ -107,7 +122,7 @@ void AddFitSplatsCommand(CLI::App& app) {
       ->delimiter(',')
       ->type_name("NAME,...");
   command->add_option("--count", arguments->options.count, "about so many splats")
-      ->check(WholeNumberBetween(1, 1000000))
+      ->check(WholeNumberBetween(10, 1000000))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--iterations", arguments->options.iterations, "of the optimiser")

@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,6 @@
 #include "cli/progress.h"
 #include "cli/warnings.h"
 #include "rollout/mujoco_library.h"
-#include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
 #include "twin/stop_request.h"
@@ -78,15 +76,10 @@ Recording Simulate(const std::string& scene, RecordOptions options) {
 void Run(const std::string& scene, const std::string& output, bool force,
          const RecordOptions& options) {
   ExpectMujoco();
-  ExpectOutputs({output}, {scene});
+  const PictureOptions& pictures = options.pictures;
+  ExpectOutputs({output}, {scene, pictures.folder});
   const OutputLock lock(output);
   ExpectNew(output, force);
-  const PictureOptions& pictures = options.pictures;
-  std::optional<OutputLock> pictures_lock;
-  if (!pictures.folder.empty()) {
-    MakeFolder(pictures.folder);
-    pictures_lock.emplace(pictures.folder);
-  }
   const Recording recording = Simulate(scene, options);
   WriteRecording(recording, output);
   PrintRemarks({&recording, 1});

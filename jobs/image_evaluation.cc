@@ -43,23 +43,40 @@ std::vector<int> CamerasOf(const PictureFolder& pictures, const std::vector<std:
   return cameras;
 }
 
+// Whether something of the object, or what hides it, is within `reach` pixels of (x, y).
+bool IsNear(const Mask& mask, int x, int y, int reach) {
+  for (int row = std::max(0, y - reach); row <= std::min(mask.height - 1, y + reach); ++row) {
+    for (int column = std::max(0, x - reach); column <= std::min(mask.width - 1, x + reach);
+         ++column) {
+      if (mask.kind[static_cast<std::size_t>(row) * mask.width + column] != kElsewhere) return true;
+    }
+  }
+  return false;
+}
+
 // A prediction of the nodes, and the splats that move with them.
 struct Prediction {
   std::string name;
   const std::vector<Points>* nodes;
   SplatMotion motion;
 
-  Prediction(std::string of, const std::vector<Points>& frames, const Splats& splats)
-      : name(std::move(of)), nodes(&frames), motion(splats, frames[0]) {}
+  // `start`: where the nodes are in the recording's frame 0, as the splats are; a prediction may
+  // have them elsewhere then.
+  Prediction(std::string of, const std::vector<Points>& frames, const Points& start,
+             const Splats& splats)
+      : name(std::move(of)), nodes(&frames), motion(splats, start) {}
 };
 
 std::vector<Prediction> PredictionsOf(const EvaluatedRecording& evaluated, const Splats& splats) {
   std::vector<Prediction> predictions;
   for (const LevelResult& level : evaluated.result.levels) {
-    predictions.emplace_back(fmt::format("level {}", level.level), level.positions, splats);
+    predictions.emplace_back(fmt::format("level {}", level.level), level.positions,
+                             level.positions[0], splats);
   }
+  const Recording& recording = evaluated.recording;
+  const Points start = recording.start.leftCols(recording.particle_count());
   for (const BaselineResult& baseline : evaluated.result.baselines) {
-    predictions.emplace_back(baseline.name, baseline.positions, splats);
+    predictions.emplace_back(baseline.name, baseline.positions, start, splats);
   }
   return predictions;
 }
@@ -100,8 +117,9 @@ class ImageJudge {
         const SplatPicture picture = Rasterise(prediction.motion.At((*prediction.nodes)[frame], 1),
                                                pictures_.cameras()[camera].view, {}, 1);
         const Image predicted = BytesOf(picture);
-        evaluation_.rows[i].errors[frame].push_back(
-            CompareImages(predicted, picture.coverage, recorded, mask));
+        if (const auto errors = CompareImages(predicted, picture.coverage, recorded, mask)) {
+          evaluation_.rows[i].errors[frame].push_back(*errors);
+        }
         if (i == 0 && camera == cameras_.front()) Keep(frame, recorded, mask, predicted);
       }
     }
@@ -123,6 +141,30 @@ class ImageJudge {
   ImageEvaluation& evaluation_;
 };
 
+// Which of the measured points that a camera should see are where it sees the object, within a few
+// pixels: 0 to 1. Points beside the picture do not count; 1 where there are none.
+double PartInMasks(const PictureFolder& pictures, const std::vector<int>& cameras,
+                   const Recording& recording) {
+  constexpr int kLooks = 8;  // frames
+  int inside = 0, all = 0;
+  for (const int camera : cameras) {
+    const PinholeCamera& view = pictures.cameras()[camera].view;
+    const int reach = 2 + view.width / 150;  // pixels
+    for (int look = 0; look < kLooks; ++look) {
+      const int frame = look * (recording.frame_count() - 1) / (kLooks - 1);
+      const Mask mask = pictures.ReadObjectMask(camera, frame);
+      for (const auto& point : recording.points[frame].colwise()) {
+        const Eigen::Vector3d t = view.axes * point + view.shift;
+        const double u = view.fx * t.x() / t.z() + view.cx, v = view.fy * t.y() / t.z() + view.cy;
+        if (!(t.z() > 0 && u >= 0 && u < view.width && v >= 0 && v < view.height)) continue;
+        ++all;
+        inside += IsNear(mask, static_cast<int>(u), static_cast<int>(v), reach) ? 1 : 0;
+      }
+    }
+  }
+  return all > 0 ? static_cast<double>(inside) / all : 1;
+}
+
 }  // namespace
 
 ImageEvaluation EvaluateImages(const ImageOptions& options, EvaluatedRecording* evaluated) {
@@ -137,6 +179,13 @@ ImageEvaluation EvaluateImages(const ImageOptions& options, EvaluatedRecording* 
   for (const std::string& warning :
        WarningsOf(CheckPlacement(splats, (*predictions[0].nodes)[0]), options.splats)) {
     evaluated->recording.warnings.push_back(warning);
+  }
+  constexpr double kFew = 0.5;
+  if (const double part = PartInMasks(pictures, cameras, evaluated->recording); part < kFew) {
+    evaluated->recording.warnings.push_back(fmt::format(
+        "{}: only {:.0f} % of the measured points are where the cameras see the object; are these "
+        "the pictures of {}?",
+        options.pictures, 100 * part, evaluated->path));
   }
   ImageJudge judge(pictures, cameras, predictions, &evaluation);
   const int last = pictures.frame_count() - 1;

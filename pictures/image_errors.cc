@@ -116,7 +116,7 @@ double Iou(const std::vector<float>& coverage, const Mask& mask) {
     both += recorded && predicted ? 1 : 0;
     either += recorded || predicted ? 1 : 0;
   }
-  return either == 0 ? 1 : static_cast<double>(both) / static_cast<double>(either);
+  return static_cast<double>(both) / static_cast<double>(either);
 }
 
 }  // namespace
@@ -180,16 +180,14 @@ PixelBox BoxOf(const Mask& mask) {
   return box;
 }
 
-ImageErrors CompareImages(const Image& predicted, const std::vector<float>& coverage,
-                          const Image& recorded, const Mask& mask) {
+std::optional<ImageErrors> CompareImages(const Image& predicted, const std::vector<float>& coverage,
+                                         const Image& recorded, const Mask& mask) {
+  const PixelBox box = BoxOf(mask);
+  if (box.empty()) return std::nullopt;
   const Image one = WithoutHidden(predicted, mask), other = ObjectAlone(recorded, mask);
   const PixelBox whole{0, 0, recorded.width, recorded.height};
-  ImageErrors errors{Iou(coverage, mask), Psnr(one, other, whole), Ssim(one, other, whole), {}, {}};
-  if (const PixelBox box = BoxOf(mask); !box.empty()) {
-    errors.box_psnr = Psnr(one, other, box);
-    errors.box_ssim = Ssim(one, other, box);
-  }
-  return errors;
+  return ImageErrors{Iou(coverage, mask), Psnr(one, other, whole), Ssim(one, other, whole),
+                     Psnr(one, other, box), Ssim(one, other, box)};
 }
 
 }  // namespace physpring

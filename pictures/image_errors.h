@@ -33,16 +33,16 @@ double Psnr(const Image& one, const Image& other, const PixelBox& box);
 double Ssim(const Image& one, const Image& other, const PixelBox& box);
 
 struct ImageErrors {
-  double iou = 0;  // of the masks: common pixels by pixels of either; 1 where neither has one
-  double psnr = 0, ssim = 0;  // over the whole picture, most of which is black
-  // Over the box around the recorded object; none where it is not seen.
-  std::optional<double> box_psnr, box_ssim;
+  double iou = 0;                     // of the masks: common pixels by pixels of either
+  double psnr = 0, ssim = 0;          // over the whole picture, most of which is black
+  double box_psnr = 0, box_ssim = 0;  // over the box around the recorded object
 };
 
 // `coverage`: by pixel, from 0 to 1, how much the predicted object hides what is behind it. Its
-// mask is where that is a half or more. (PhysTwin's has all that is not 0.)
-ImageErrors CompareImages(const Image& predicted, const std::vector<float>& coverage,
-                          const Image& recorded, const Mask& mask);
+// mask is where that is a half or more. (PhysTwin's has all that is not 0.) None where the object
+// is not seen in what was recorded: nothing can be said then.
+std::optional<ImageErrors> CompareImages(const Image& predicted, const std::vector<float>& coverage,
+                                         const Image& recorded, const Mask& mask);
 
 // The picture, black where the mask is not the object.
 Image ObjectAlone(const Image& image, const Mask& mask);

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "pictures/png_file.h"
 #include "twin/atomic_file.h"
 #include "twin/error.h"
 #include "twin/json_fields.h"
+#include "twin/plain_name.h"
 #include "twin/quote.h"
 
 namespace physpring {
@@ -21,6 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr char kFile[] = "cameras.json", kFormat[] = "physpring pictures";
 constexpr int kVersion = 1, kMostPixels = 8192, kMostFrames = 1000000;
+constexpr double kLeastFocal = 1e-3, kFarthestPixel = 1e6;  // pixels
+constexpr double kFarthest = 1000;                          // m
+constexpr double kLeastUnit = 1e-6, kMostUnit = 0.01;       // m, of depths
 
 int CountWithin(const JsonFields& json, const std::string& key, int least, int most) {
   const int count = json.Count(key);
@@ -36,15 +41,19 @@ double PositiveNumber(const JsonFields& json, const std::string& key) {
   return number;
 }
 
+double NumberWithin(const JsonFields& json, const std::string& key, double least, double most) {
+  const double number = json.Number(key);
+  if (!(number >= least && number <= most)) {
+    json.Fail(key, fmt::format("is {}; must be {} to {}", number, least, most));
+  }
+  return number;
+}
+
 // A name becomes a folder.
 std::string NameIn(const JsonFields& json) {
   const std::string name = json.Text("name");
-  const bool plain = !name.empty() && name.front() != '.' &&
-                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                       return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-                     });
-  if (!plain) {
-    json.Fail("name", fmt::format("is {}; must be letters, digits, '_', '-' and '.'", Quote(name)));
+  if (!IsPlainName(name)) {
+    json.Fail("name", fmt::format("is {}; must be {}", Quote(name), kPlainName));
   }
   return name;
 }
@@ -60,6 +69,9 @@ void ReadPose(const JsonFields& json, PinholeCamera* view) {
   const bool rigid = (turn.transpose() * turn).isIdentity(kTolerance) && turn.determinant() > 0 &&
                      pose.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));
   if (!rigid) json.Fail("pose", "is no rotation and shift from the camera to the world");
+  if (!(pose.topRightCorner<3, 1>().cwiseAbs().maxCoeff() <= kFarthest)) {
+    json.Fail("pose", fmt::format("is farther than {} m from the origin", kFarthest));
+  }
   view->axes = turn.transpose();
   view->shift = -turn.transpose() * pose.topRightCorner<3, 1>();
 }
@@ -69,10 +81,10 @@ RecordedCamera ReadCamera(const JsonFields& json) {
   RecordedCamera camera{NameIn(json), {}};
   camera.view.width = CountWithin(json, "width", 1, kMostPixels);
   camera.view.height = CountWithin(json, "height", 1, kMostPixels);
-  camera.view.fx = PositiveNumber(json, "fx");
-  camera.view.fy = PositiveNumber(json, "fy");
-  camera.view.cx = json.Number("cx");
-  camera.view.cy = json.Number("cy");
+  camera.view.fx = NumberWithin(json, "fx", kLeastFocal, kFarthestPixel);
+  camera.view.fy = NumberWithin(json, "fy", kLeastFocal, kFarthestPixel);
+  camera.view.cx = NumberWithin(json, "cx", -kFarthestPixel, kFarthestPixel);
+  camera.view.cy = NumberWithin(json, "cy", -kFarthestPixel, kFarthestPixel);
   ReadPose(json, &camera.view);
   return camera;
 }
@@ -104,7 +116,9 @@ PictureFolder::PictureFolder(const std::string& path) : path_(path) {
   CountWithin(json, "version", kVersion, kVersion);
   fps_ = PositiveNumber(json, "fps");
   frames_ = CountWithin(json, "frames", 1, kMostFrames);
-  if (json.Has("depth_unit")) depth_unit_ = PositiveNumber(json, "depth_unit");
+  if (json.Has("depth_unit")) {
+    depth_unit_ = NumberWithin(json, "depth_unit", kLeastUnit, kMostUnit);
+  }
   for (const JsonFields& camera : json.Objects("cameras")) {
     cameras_.push_back(ReadCamera(camera));
     const auto is_same = [&](const RecordedCamera& other) {
@@ -123,7 +137,18 @@ PictureFolder::PictureFolder(std::string path, double fps, int frames, double de
       fps_(fps),
       frames_(frames),
       depth_unit_(depth_unit),
-      cameras_(std::move(cameras)) {}
+      cameras_(std::move(cameras)) {
+  std::set<std::string> names;
+  for (const RecordedCamera& camera : cameras_) {
+    if (!IsPlainName(camera.name)) {
+      throw Error(fmt::format("camera {} cannot have a folder of pictures; its name must be {}",
+                              Quote(camera.name), kPlainName));
+    }
+    if (!names.insert(camera.name).second) {
+      throw Error(fmt::format("camera {} is named twice", Quote(camera.name)));
+    }
+  }
+}
 
 void PictureFolder::MakeFolders() const {
   std::error_code none;
@@ -135,6 +160,20 @@ void PictureFolder::MakeFolders() const {
     MakeFolder(FolderOf("mask", camera.name));
     if (has_depth()) MakeFolder(FolderOf("depth", camera.name));
   }
+}
+
+void PictureFolder::Remove(int frames) const {
+  std::error_code ignored;
+  for (const char* kind : {"color", "mask", "depth"}) {
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      for (int frame = 0; frame < frames; ++frame) {
+        fs::remove(PathOf(kind, static_cast<int>(i), frame), ignored);
+      }
+      fs::remove(FolderOf(kind, cameras_[i].name), ignored);
+    }
+    fs::remove(fs::path(path_) / kind, ignored);
+  }
+  fs::remove(path_, ignored);
 }
 
 void PictureFolder::WriteCameras() const {

@@ -32,7 +32,8 @@ class PictureFolder {
   // into the picture. Throws Error, one line that begins with the file's path.
   explicit PictureFolder(const std::string& path);
 
-  // A new one, of which nothing is written yet.
+  // A new one, of which nothing is written yet. Throws Error for cameras that have no plain names
+  // (twin/plain_name.h), or one of another.
   PictureFolder(std::string path, double fps, int frames, double depth_unit,
                 std::vector<RecordedCamera> cameras);
 
@@ -40,6 +41,8 @@ class PictureFolder {
   // when all are there: so Error is thrown where it is there already, and none are lost.
   void MakeFolders() const;
   void WriteCameras() const;
+  // Removes the first frames' pictures that were written, and folders that are empty then.
+  void Remove(int frames) const;
 
   const std::string& path() const { return path_; }
   double fps() const { return fps_; }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "twin/atomic_file.h"
 #include "twin/error.h"
@@ -69,10 +70,30 @@ class PngImage {
   png_image image_{};
 };
 
-// More than any sound file of that many pixels has.
+// The file without what says how colours are to be seen: libpng would change the numbers.
+std::string WithoutColourSpaces(const std::string& bytes) {
+  constexpr std::size_t kSignature = 8, kOfChunk = 12;  // length, name, check
+  std::string kept = bytes.substr(0, kSignature);
+  for (std::size_t at = kSignature; at + kOfChunk <= bytes.size();) {
+    std::size_t size = kOfChunk;
+    for (int i = 0; i < 4; ++i) {
+      size += std::size_t{static_cast<unsigned char>(bytes[at + i])} << (24 - 8 * i);
+    }
+    const std::string_view name = std::string_view(bytes).substr(at + 4, 4);
+    const bool is_space =
+        name == "gAMA" || name == "sRGB" || name == "cHRM" || name == "iCCP" || name == "cICP";
+    if (!is_space) kept.append(bytes, at, size);
+    at += size;
+  }
+  return kept;
+}
+
+// No sound file of that many pixels has more bytes.
 std::string ReadBytes(const std::string& path, int width, int height) {
   constexpr std::size_t kMostBytesOfPixel = 8, kRest = 1 << 20;
-  return ReadFile(path, kMostBytesOfPixel * width * height + kRest);
+  const std::string bytes = ReadFile(path, kMostBytesOfPixel * width * height + kRest);
+  if (bytes.empty()) throw Error(path + ": is empty");
+  return WithoutColourSpaces(bytes);
 }
 
 }  // namespace

@@ -21,13 +21,16 @@ using Json = nlohmann::ordered_json;
 // Which columns a table has beside the prediction's.
 struct Columns {
   bool fit, lifted, published;
+  std::size_t name;  // its width
 };
 
 Columns ColumnsOf(const std::vector<Row>& rows) {
+  std::size_t name = 10;
+  for (const Row& row : rows) name = std::max(name, row.name.size());
   return {
       rows[0].fit.has_value(),
       std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.level >= 0; }) > 1,
-      rows[0].published_l1.has_value()};
+      rows[0].published_l1.has_value(), name};
 }
 
 // The two or four numbers of one part.
@@ -42,7 +45,7 @@ std::string FormatErrors(const RowErrors& errors, bool lifted) {
 }
 
 std::string FormatRow(const Row& row, const Columns& columns) {
-  std::string line = fmt::format("{:<10}", row.name);
+  std::string line = fmt::format("{:<{}}", row.name, columns.name);
   if (row.level >= 0) {
     line += fmt::format(" {:>6} {:>8} {:>9} {:>8.0f}", row.nodes, row.springs, row.substeps,
                         row.frames_per_second);
@@ -61,9 +64,9 @@ std::string FormatRow(const Row& row, const Columns& columns) {
 // Two lines: the first names the parts, the second the columns of each part.
 std::string FormatHead(const Columns& columns) {
   const int width = columns.lifted ? 35 : 17;
-  std::string parts = fmt::format("{:<45}", "errors in mm");
-  std::string names =
-      fmt::format("{:<10} {:>6} {:>8} {:>9} {:>8}", "", "nodes", "springs", "sub-steps", "FPS");
+  std::string parts = fmt::format("{:<{}}", "errors in mm", columns.name + 35);
+  std::string names = fmt::format("{:<{}} {:>6} {:>8} {:>9} {:>8}", "", columns.name, "nodes",
+                                  "springs", "sub-steps", "FPS");
   const std::string errors = columns.lifted ? fmt::format(" | {:>8} {:>8} {:>8} {:>8}", "CD",
                                                           "track", "lift. CD", "l. track")
                                             : fmt::format(" | {:>8} {:>8}", "CD", "track");

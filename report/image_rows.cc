@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/evaluation.h"
 
 namespace physpring {
@@ -12,9 +14,9 @@ using Json = nlohmann::ordered_json;
 
 class MeanOf {
  public:
-  void Add(const std::optional<double>& value) {
-    sum_ += value.value_or(0);
-    count_ += value.has_value() ? 1 : 0;
+  void Add(double value) {
+    sum_ += value;
+    ++count_;
   }
   std::optional<double> Get() const {
     return count_ > 0 ? std::optional(sum_ / count_) : std::nullopt;
@@ -83,16 +85,18 @@ MeanImageErrors MeanOverFrames(const ImageRow& row, int first, int last) {
 std::string FormatImageTable(const EvaluatedRecording& evaluated) {
   const ImageEvaluation& images = *evaluated.images;
   const std::vector<Part> parts = PartsOf(evaluated);
-  std::string text = fmt::format("pictures of {} by {}; PSNR in dB; box: around the object\n{:<12}",
-                                 images.pictures, fmt::join(images.cameras, ", "), "");
+  std::size_t width = 12;  // of names
+  for (const ImageRow& row : images.rows) width = std::max(width, row.name.size());
+  std::string text = fmt::format("pictures of {} by {}; PSNR in dB; box: around the object\n{:<{}}",
+                                 images.pictures, fmt::join(images.cameras, ", "), "", width);
   for (const Part& part : parts) text += fmt::format(" | {:<31}", part.name);
-  text += fmt::format("\n{:<12}", "");
+  text += fmt::format("\n{:<{}}", "", width);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     text += fmt::format(" | {:>5} {:>5} {:>6} {:>5} {:>6}", "IoU", "PSNR", "SSIM", "box", "box");
   }
   text += "\n";
   for (const ImageRow& row : images.rows) {
-    text += fmt::format("{:<12}", row.name);
+    text += fmt::format("{:<{}}", row.name, width);
     for (const Part& part : parts) text += Cells(MeanOverFrames(row, part.first, part.end));
     text += "\n";
   }

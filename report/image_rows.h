@@ -14,7 +14,7 @@ namespace physpring {
 
 struct EvaluatedRecording;
 
-// Errors of one prediction: of each frame, of each camera.
+// Errors of one prediction: of each frame, of each camera that sees the object then.
 struct ImageRow {
   std::string name;  // as in Row
   std::vector<std::vector<ImageErrors>> errors;
@@ -33,8 +33,8 @@ struct ImageEvaluation {
   std::vector<ShownPicture> shown;
 };
 
-// Over all pictures of a range of frames; every picture counts once, as in PhysTwin. Those of the
-// box count where the object is seen.
+// Over all pictures of a range of frames in which the object is seen; every picture counts once, as
+// in PhysTwin.
 struct MeanImageErrors {
   int pictures = 0;
   std::optional<double> iou, psnr, ssim, box_psnr, box_ssim;

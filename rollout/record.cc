@@ -196,7 +196,7 @@ Recording RecordScene(const std::string& scene_path, const RecordOptions& option
   recording.mass = declared_points.mass;
   recording.gravity = Eigen::Map<const Eigen::Vector3d>(declared->opt.gravity);
   if (declared->opt.disableflags & mjDSBL_GRAVITY) recording.gravity.setZero();
-  recording.train_frames = static_cast<int>(std::lround(0.7 * frames));
+  recording.train_frames = std::max(2, static_cast<int>(std::lround(0.7 * frames)));
 
   FitTimestep(options.fps, model.get());
   const DataPtr data = MakeData(*model);
@@ -205,6 +205,7 @@ Recording RecordScene(const std::string& scene_path, const RecordOptions& option
   std::optional<PictureRecorder> pictures;
   if (const PictureOptions& asked = options.pictures; !asked.folder.empty()) {
     PreparePictures(asked.quality, asked.width, asked.height, model.get());
+    model->vis.quality.offsamples = 0;  // smooth edges would have depths that nothing has
     pictures.emplace(*model, soft, asked, scene_path);
   }
   RecordMotion(frames, scene_path, &run, &recording, pictures ? &*pictures : nullptr);

@@ -33,6 +33,9 @@ mjvCamera FindFixed(const mjModel& model, const std::string& name, const std::st
     throw Error(fmt::format("{}: camera {} moves; pictures are recorded by fixed ones", scene,
                             Quote(name)));
   }
+  if (model.cam_projection[camera] != mjPROJ_PERSPECTIVE) {
+    throw Error(fmt::format("{}: camera {} has no perspective", scene, Quote(name)));
+  }
   return view;
 }
 
@@ -51,7 +54,15 @@ PictureRecorder::PictureRecorder(const mjModel& model, const SoftPoints& soft,
     recorded_.push_back({name, {}});
   }
   for (const int element : soft.Particles()) is_body_[BodyOf(model, soft, element)] = true;
-  PictureFolder(options.folder, 0, 0, kDepthUnit, recorded_).MakeFolders();
+  Folder(0, 0).MakeFolders();
+}
+
+PictureRecorder::~PictureRecorder() {
+  if (!finished_) Folder(0, 0).Remove(begun_);
+}
+
+PictureFolder PictureRecorder::Folder(double fps, int frames) const {
+  return {options_.folder, fps, frames, kDepthUnit, recorded_};
 }
 
 Mask PictureRecorder::MaskOf(const mjvCamera& camera) {
@@ -81,7 +92,8 @@ Mask PictureRecorder::MaskOf(const mjvCamera& camera) {
 void PictureRecorder::Record(int frame, const mjData& data) {
   mj_copyData(data_.get(), &model_, &data);
   PlaceForDrawing(model_, data_.get());
-  const PictureFolder folder(options_.folder, 0, 0, kDepthUnit, recorded_);
+  begun_ = frame + 1;
+  const PictureFolder folder = Folder(0, 0);
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     const int camera = static_cast<int>(i);
     const DrawnScene drawn = painter_.PaintWithDepth(data_.get(), cameras_[i]);
@@ -93,7 +105,8 @@ void PictureRecorder::Record(int frame, const mjData& data) {
 }
 
 void PictureRecorder::Finish(double fps, int frames) {
-  PictureFolder(options_.folder, fps, frames, kDepthUnit, recorded_).WriteCameras();
+  Folder(fps, frames).WriteCameras();
+  finished_ = true;
 }
 
 }  // namespace physpring

@@ -26,9 +26,14 @@ struct PictureOptions {
 class PictureRecorder {
  public:
   // `model` has been made ready by PreparePictures; it and `soft` live longer. Throws Error where
-  // OSMesa is missing, and for cameras that `scene` does not have or that move.
+  // OSMesa is missing, and for cameras that `scene` does not have, that move or
+  // have no perspective.
   PictureRecorder(const mjModel& model, const SoftPoints& soft, const PictureOptions& options,
                   const std::string& scene);
+
+  ~PictureRecorder();  // without Finish: removes what it has written
+  PictureRecorder(const PictureRecorder&) = delete;
+  PictureRecorder& operator=(const PictureRecorder&) = delete;
 
   // Writes what all cameras see. `data` is placed for drawing.
   void Record(int frame, const mjData& data);
@@ -38,6 +43,7 @@ class PictureRecorder {
 
  private:
   Mask MaskOf(const mjvCamera& camera);
+  PictureFolder Folder(double fps, int frames) const;
 
   const mjModel& model_;
   const SoftPoints& soft_;
@@ -47,6 +53,8 @@ class PictureRecorder {
   std::vector<mjvCamera> cameras_;
   std::vector<RecordedCamera> recorded_;
   std::vector<bool> is_body_;  // of the soft body
+  int begun_ = 0;              // frames of which there may be pictures
+  bool finished_ = false;
 };
 
 }  // namespace physpring

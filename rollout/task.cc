@@ -186,7 +186,10 @@ TaskSplats ReadTaskSplats(const JsonFields& fields, const std::string& folder) {
     background.ExpectOnly({"file", "scale", "pose"});
     splats.background =
         ReadPlacedSplats(background, FileOf(background, "file", folder, background.Text("file")));
-    if (!fields.Has("file")) return splats;  // the object has its skin
+    if (!fields.Has("file")) {  // the object has its skin
+      fields.ExpectOnly({"background"});
+      return splats;
+    }
   }
   splats.file = FileOf(fields, "file", folder, fields.Text("file"));
   splats.object = ReadPlacedSplats(fields, splats.file);

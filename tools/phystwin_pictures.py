@@ -4,14 +4,16 @@
 
 It takes color/, depth/, mask/, calibrate.pkl and metadata.json of the case. Frames, cameras and
 their frame of reference are those of the recording that phystwin_to_npz.py makes. The object's mask
-becomes 255, the controller's ("hand") 128: PhysTwin compares nothing there. docs/splats.md says
+becomes 255, the controller's ("hand") 128: PhysTwin compares nothing there. docs/phystwin.md says
 more. Needs Python 3.9, numpy and Pillow; runs no code that a pickle names.
 """
 
 import argparse
 import json
 import pathlib
+import shutil
 import sys
+import tempfile
 
 try:
     import numpy as np
@@ -62,6 +64,8 @@ class Case:
             self.poses = [np.array(pose, float).reshape(4, 4) for pose in poses]
         except (AttributeError, TypeError, ValueError):
             raise Error(f"{folder / 'calibrate.pkl'}: is no list of 4 x 4 matrices") from None
+        if not np.isfinite(self.intrinsics).all() or self.frames < 1:
+            raise Error(f"{folder / 'metadata.json'}: has intrinsics that are not finite, or no frame")
         if self.intrinsics.shape != (len(self.poses), 3, 3) or len(self.size) != 2:
             raise Error(f"{folder}: has {len(self.poses)} poses in calibrate.pkl, and intrinsics of "
                         f"shape {self.intrinsics.shape} in metadata.json")
@@ -73,6 +77,8 @@ class Case:
         """(the object's number, those of controllers) in mask/CAMERA/."""
         path = self.folder / "mask" / f"mask_info_{camera}.json"
         names = read_json(path)
+        if not isinstance(names, dict) or not all(key.isdigit() for key in names):
+            raise Error(f"{path}: is no object of a name for each mask's number")
         objects = [int(key) for key, name in names.items() if name != CONTROLLER]
         if len(objects) != 1:
             raise Error(f"{path}: names {len(objects)} objects beside {CONTROLLER!r}; one is expected")
@@ -103,6 +109,8 @@ class Case:
             depth = np.load(path, allow_pickle=False)
         except (OSError, ValueError) as error:
             raise Error(f"{path}: {error}") from None
+        if depth.dtype.kind not in "uif":
+            raise Error(f"{path}: holds no numbers")
         if depth.shape != self.size[::-1]:
             raise Error(f"{path}: has shape {depth.shape}; {self.size[::-1]} is expected")
         return np.clip(np.nan_to_num(depth), 0, 65535).astype(np.uint16)
@@ -117,27 +125,39 @@ def write(picture, path):
     Image.fromarray(picture).save(path)
 
 
-def convert(args):
-    notes = []
-    settings = read_settings(args.case, args, notes.append)
-    case = Case(args.case, bool(settings.reverse_z) if settings.reverse_z is not None else True)
-    if settings.reverse_z is None:
-        notes.append("nothing says which way z points: down is assumed (--no-reverse-z)")
-    if (args.output / "cameras.json").exists():
-        raise Error(f"{args.output}: has pictures already; name another folder, or remove it")
+def write_all(case, settings, folder):
     for camera in range(len(case.poses)):
         for frame in range(case.frames):
             name = f"{camera}/{frame:05}.png"
-            write(case.color(camera, frame), args.output / "color" / name)
-            write(case.mask(camera, frame), args.output / "mask" / name)
+            write(case.color(camera, frame), folder / "color" / name)
+            write(case.mask(camera, frame), folder / "mask" / name)
             if case.has_depth:
-                write(case.depth(camera, frame), args.output / "depth" / name)
+                write(case.depth(camera, frame), folder / "depth" / name)
     cameras = {"format": "physpring pictures", "version": 1, "fps": settings.fps,
                "frames": case.frames}
     if case.has_depth:
         cameras["depth_unit"] = DEPTH_UNIT
     cameras["cameras"] = [case.camera(camera) for camera in range(len(case.poses))]
-    (args.output / "cameras.json").write_text(json.dumps(cameras, indent=1) + "\n")
+    (folder / "cameras.json").write_text(json.dumps(cameras, indent=1) + "\n")
+
+
+def convert(args):
+    """Writes the folder whole, or not at all."""
+    notes = []
+    settings = read_settings(args.case, args, notes.append)
+    case = Case(args.case, settings.reverse_z is not False)
+    if settings.reverse_z is None:
+        notes.append("nothing says which way z points: down is assumed (--no-reverse-z)")
+    if args.output.exists():
+        raise Error(f"{args.output}: is there already; name another folder, or remove it")
+    args.output.parent.mkdir(parents=True, exist_ok=True)
+    draft = pathlib.Path(tempfile.mkdtemp(prefix=f".{args.output.name}.", dir=args.output.parent))
+    try:
+        write_all(case, settings, draft)
+        draft.chmod(0o755)
+        draft.rename(args.output)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
     print(f"{args.output}: {case.frames} frames of {len(case.poses)} cameras")
     return notes
 
@@ -161,6 +181,8 @@ def main(argv=None):
         notes = convert(args)
     except (Error, OSError) as error:
         sys.exit(f"phystwin_pictures: error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("phystwin_pictures: stopped; nothing was written")
     for note in notes:
         print(f"phystwin_pictures: note: {note}", file=sys.stderr)
 

@@ -128,6 +128,7 @@ SplatFit FitSplats(const PictureFolder& pictures, const SplatFitOptions& options
     KeepWithin(start.spacing, &splats);
   }
   fit.loss = loss_at(&gradient);
+  if (options.iterations == 0) fit.first_loss = fit.loss;
   fit.splats = StoredSplats(splats);
   const PlacedSplats placed = AsStored(fit.splats);
   for (const Target& target : all) {

@@ -4,6 +4,7 @@
 #define PHYSPRING_SPLATS_FIT_SPLAT_FIT_H_
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "pictures/image_errors.h"
@@ -25,7 +26,8 @@ struct SplatFit {
   Splats splats;                    // of one colour from all sides
   double spacing = 0;               // m, of the splats at the start
   double first_loss = 0, loss = 0;  // before and after the fit
-  std::vector<ImageErrors> errors;  // of that frame, by camera of the folder
+  // Of that frame, by camera of the folder; none: it does not see the object.
+  std::vector<std::optional<ImageErrors>> errors;
 };
 
 // Minimises, over all pixels of those cameras that are not hidden,

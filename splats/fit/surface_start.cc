@@ -148,10 +148,14 @@ SurfaceStart StartOnSurface(const PictureFolder& pictures, const std::vector<int
   std::vector<SurfacePoint> points;
   for (const int camera : cameras) DepthView(pictures, camera, frame).AddPoints(&points);
   if (points.empty()) {
-    throw Error(fmt::format("{}: no camera sees the object in frame {}", pictures.path(), frame));
+    throw Error(fmt::format("{}: no camera sees the object, or how far it is, in frame {}",
+                            pictures.path(), frame));
   }
+  // several pixels in most cells: where they are fewer, the cells' size says nothing
+  constexpr double kMostOfPoints = 0.7;
+  const int most = static_cast<int>(kMostOfPoints * static_cast<double>(points.size()));
   SurfaceStart start;
-  start.spacing = SizeFor(points, count);
+  start.spacing = SizeFor(points, std::clamp(count, 1, std::max(1, most)));
   const std::vector<SurfacePoint> means = MeanOfEachCell(points, start.spacing);
   start.splats.resize(Eigen::NoChange, static_cast<Eigen::Index>(means.size()));
   for (std::size_t i = 0; i < means.size(); ++i) {

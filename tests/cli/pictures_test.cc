@@ -110,6 +110,19 @@ TEST_F(Pictures, AreOfTheRecordingsFrames) {
   EXPECT_THAT(result.errors, HasSubstr("has 7 frames at 50 fps, but"));
 }
 
+TEST_F(Pictures, ThoseOfAnotherRecordingAreAWarning) {
+  Recording elsewhere = recording_;
+  for (Points* points : {&elsewhere.start, &elsewhere.rest, &elsewhere.interior}) {
+    points->row(0).array() += 0.08;
+  }
+  for (Points& frame : elsewhere.points) frame.row(0).array() += 0.08;
+  for (Points& frame : elsewhere.controllers) frame.row(0).array() += 0.08;
+  WriteRecording(elsewhere, File("swing.npz"));
+  const ProgramResult result = Eval({"--images", File("seen"), "--splats", File("block.ply")});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("of the measured points are where the cameras see"));
+}
+
 TEST_F(Pictures, MissingAndDamagedOnesAreOneLine) {
   std::filesystem::remove(File("seen/mask/front/00003.png"));
   const ProgramResult missing = Eval({"--images", File("seen"), "--splats", File("block.ply")});
@@ -131,11 +144,26 @@ TEST_F(Pictures, OtherMethodsAreJudgedBesideThem) {
   const Json &mine = json["mine"], level0 = json["levels"][0];
   EXPECT_NEAR(mine["prediction"]["track"], level0["prediction"]["track"].get<double>(), 1e-8);
   EXPECT_GT(json["images"]["mine"]["prediction"]["psnr"], 60);
+  // one that is 3 cm too high in all frames is judged where it is
+  std::vector<Points> high = nodes_;
+  for (Points& frame : high) frame.row(2).array() += 0.03;
+  WriteNpz({{"particles", StoreFrames(high)}}, File("high.npz"));
+  ASSERT_EQ(Eval({"--prediction", "high=" + File("high.npz"), "--images", File("seen"), "--splats",
+                  File("block.ply"), "--json", File("e.json")})
+                .status,
+            0);
+  const Json judged = Json::parse(ReadFile(File("e.json")))["recordings"][0]["images"]["high"];
+  EXPECT_LT(judged["prediction"]["iou"], 0.5);
   WriteNpz({{"particles", StoreFrames({nodes_[0]})}}, File("short.npz"));
   const ProgramResult cut = Eval({"--prediction", "mine=" + File("short.npz")});
   EXPECT_EQ(cut.status, 1);
   EXPECT_THAT(cut.errors, HasSubstr("short.npz"));
-  EXPECT_EQ(Eval({"--prediction", "nameless.npz"}).status, 2);
+  for (const char* word : {"nameless.npz", "levels=a.npz", "<b>=a.npz", "=a.npz", "a="}) {
+    EXPECT_EQ(Eval({"--prediction", word}).status, 2) << word;
+  }
+  EXPECT_EQ(Eval({"--prediction", named, "--prediction", named}).status, 2);
+  EXPECT_THAT(Eval({"--prediction", named, "--json", File("other.npz")}).errors,
+              HasSubstr("is read by this command"));
 }
 
 TEST_F(Pictures, FitSplatsMakesAFileThatEvalTakes) {

@@ -65,6 +65,25 @@ TEST(PictureFolder, IsNoneUntilAllIsWritten) {
   EXPECT_THROW(written.MakeFolders(), Error);  // another recording would be lost
 }
 
+TEST(PictureFolder, CamerasHaveNamesThatFoldersCanHave) {
+  for (const char* name : {"..", "a/b", "front left", ""}) {
+    EXPECT_THROW(PictureFolder("x", 30, 1, 0, {SomeCamera(name)}), Error) << name;
+  }
+  EXPECT_THROW(PictureFolder("x", 30, 1, 0, {SomeCamera("a"), SomeCamera("a")}), Error);
+}
+
+TEST(PictureFolder, RemovesWhatItHasWrittenAlone) {
+  const TemporaryFolder folder;
+  const PictureFolder written(folder.File("seen"), 30, 2, 1e-4, {SomeCamera("front")});
+  written.MakeFolders();
+  written.Write(0, 0, Mask{6, 4, std::vector<unsigned char>(24, kObject)});
+  WriteFileAtomically(folder.File("seen/mask/notes.txt"), "mine");
+  written.Remove(2);
+  EXPECT_FALSE(std::filesystem::exists(folder.File("seen/color")));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("seen/mask/front")));
+  EXPECT_TRUE(std::filesystem::exists(folder.File("seen/mask/notes.txt")));
+}
+
 struct BadFile {
   const char *from, *to, *message;
 };
@@ -98,7 +117,10 @@ INSTANTIATE_TEST_SUITE_P(
                       BadFile{"front", "../front", "must be letters, digits"},
                       BadFile{"[1, 0", "[2, 0", "is no rotation and shift"},
                       BadFile{", 0, 1]", "]", "has 14 numbers; must be a 4 x 4 matrix"},
-                      BadFile{"\"fx\": 7, ", "", "fx"}, BadFile{"\"cx\"", "\"c_x\"", "c_x"}));
+                      BadFile{"\"fx\": 7, ", "", "fx"},
+                      BadFile{"\"fx\": 7", "\"fx\": 1e300", "is 1e+300; must be"},
+                      BadFile{"[1, 0, 0, 0,", "[1, 0, 0, 1e300,", "is farther than 1000 m"},
+                      BadFile{"\"cx\"", "\"c_x\"", "c_x"}));
 
 }  // namespace
 }  // namespace physpring

@@ -21,6 +21,8 @@ constexpr char kBall[] = R"(<geom name="ball" type="sphere" size="0.004" pos="0.
 constexpr char kCameras[] = R"(
   <camera name="above" pos="0 0 0.9" xyaxes="1 0 0 0 1 0" fovy="30"/>
   <camera name="wide" pos="0.3 -0.4 0.9" xyaxes="0.8 0.6 0 -0.3 0.4 0.8" fovy="50"/>
+  <camera name="flat" pos="0 0 0.9" projection="orthographic" fovy="0.2"/>
+  <camera name="../out" pos="0 0 0.9"/>
   <body name="cart" mocap="true"><camera name="moving" pos="0 0 1"/></body>)";
 
 class RecordPictures : public SceneTest {
@@ -110,7 +112,27 @@ TEST_F(RecordPictures, WhatIsInFrontHides) {
 TEST_F(RecordPictures, CamerasMustBeThereAndStand) {
   EXPECT_THAT(MessageOf({"below"}), HasSubstr("has no camera 'below'"));
   EXPECT_THAT(MessageOf({"above", "moving"}), HasSubstr("camera 'moving' moves"));
-  EXPECT_FALSE(std::filesystem::exists(folder_.File("seen/cameras.json")));
+  EXPECT_THAT(MessageOf({"flat"}), HasSubstr("camera 'flat' has no perspective"));
+  EXPECT_THAT(MessageOf({"above", "above"}), HasSubstr("camera 'above' is named twice"));
+  EXPECT_THAT(MessageOf({"../out"}), HasSubstr("cannot have a folder of pictures"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("seen")));
+}
+
+TEST_F(RecordPictures, WhatIsStoppedLeavesNone) {
+  const std::string scene = WriteScene(Scene(std::string(kSheet) + kCameras, kTwoTies, kLift));
+  std::vector<std::string> warnings;
+  const ModelPtr model = LoadScene(scene, &warnings);
+  PreparePictures(PictureQuality::kFast, kWidth, kHeight, model.get());
+  const SoftPoints soft = FindSoftPoints(*model, scene);
+  const DataPtr data = MakeData(*model);
+  const PictureOptions options{
+      folder_.File("seen"), {"above"}, kWidth, kHeight, PictureQuality::kFast};
+  {
+    PictureRecorder recorder(*model, soft, options, scene);
+    recorder.Record(0, *data);
+    EXPECT_TRUE(std::filesystem::exists(folder_.File("seen/color/above/00000.png")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("seen")));
 }
 
 TEST_F(RecordPictures, PointsAreTheSameWithoutThem) {

@@ -88,7 +88,21 @@ class PicturesTest(unittest.TestCase):
         done = self.run_tool()
         self.assertEqual(done.returncode, 1)
         self.assertIn("color/1/1.png", done.stderr.splitlines()[-1])
-        self.assertFalse((self.output / "cameras.json").exists())
+        self.assertEqual(list(self.output.parent.iterdir()), [self.case])
+
+    def test_files_of_another_kind_are_refused(self):
+        for name, text, message in (("mask/mask_info_0.json", "[1]", "mask_info_0.json"),
+                                    ("mask/mask_info_0.json", '{"x": "cloth"}', "mask_info_0.json"),
+                                    ("metadata.json", "{}", "lacks WH")):
+            with self.subTest(text):
+                path = self.case / name
+                before = path.read_text()
+                path.write_text(text)
+                done = self.run_tool()
+                path.write_text(before)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn(message, done.stderr)
+                self.assertNotIn("Traceback", done.stderr)
 
     def test_sizes_that_disagree_are_refused(self):
         self.picture("color/0/0.png", np.zeros((4, 4, 3), np.uint8))

@@ -87,9 +87,9 @@ TEST_F(FitSplatsTest, LooksAsRecordedAlsoFromElsewhere) {
   EXPECT_NEAR(fit.splats.count(), 1500, 50);
   EXPECT_LT(fit.loss, 0.2 * fit.first_loss);
   for (int camera = 0; camera < 3; ++camera) {
-    EXPECT_GT(fit.errors[camera].iou, 0.95) << camera;
-    EXPECT_GT(fit.errors[camera].psnr, camera < 2 ? 30 : 28) << camera;
-    EXPECT_GT(fit.errors[camera].psnr, start.errors[camera].psnr + 3) << camera;
+    EXPECT_GT(fit.errors[camera]->iou, 0.95) << camera;
+    EXPECT_GT(fit.errors[camera]->psnr, camera < 2 ? 30 : 28) << camera;
+    EXPECT_GT(fit.errors[camera]->psnr, start.errors[camera]->psnr + 3) << camera;
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(FitSplatsTest, RefusesWhatCannotBeFitted) {
   const Mask nothing{96, 72, std::vector<unsigned char>(96 * 72, kElsewhere)};
   for (int i = 0; i < 3; ++i) pictures_.Write(i, 0, nothing);
   EXPECT_THAT(message([&] { FitSplats(pictures_, {}); }),
-              ::testing::HasSubstr("no camera sees the object in frame 0"));
+              ::testing::HasSubstr("no camera sees the object, or how far it is, in frame 0"));
   const PictureFolder flat(folder_.path(), 30, 1, 0, pictures_.cameras());
   EXPECT_THAT(message([&] { FitSplats(flat, {}); }), ::testing::HasSubstr("has no depth"));
 }
