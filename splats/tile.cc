@@ -9,9 +9,11 @@
 namespace physpring {
 namespace {
 
-// 16 pixels of a row at once: as many registers as the processor needs for them.
-using Floats = float __attribute__((vector_size(64)));
-using Ints = std::int32_t __attribute__((vector_size(64)));
+// 8 pixels of a row at once. (16 are one register of AVX-512, but for processors without it g++
+// takes choices between larger vectors apart into single numbers.)
+constexpr int kLanes = 8;
+using Floats = float __attribute__((vector_size(4 * kLanes)));
+using Ints = std::int32_t __attribute__((vector_size(4 * kLanes)));
 
 // exp(x) = 2^n 2^f, n whole, |f| <= 1/2; 2^f by its series to the sixth power.
 __attribute__((always_inline)) inline Floats Exp(Floats x) {
@@ -42,14 +44,14 @@ __attribute__((always_inline)) inline void Store(const Floats& values, float* to
 
 __attribute__((always_inline)) inline Floats Columns() {
   Floats columns;
-  for (int i = 0; i < kTile; ++i) columns[i] = static_cast<float>(i) + 0.5F;
+  for (int i = 0; i < kLanes; ++i) columns[i] = static_cast<float>(i) + 0.5F;
   return columns;
 }
 
-// Adds the ellipse to one row. Where no more light comes through, T is kept as -T.
+// Adds the ellipse to a part of a row, from pixel `at` on. Where no more light comes through, T is
+// kept as -T.
 __attribute__((always_inline)) inline void BlendRow(const Ellipse& e, const Floats& dx, float dy,
-                                                    int row, Tile* tile) {
-  const int at = kTile * row;
+                                                    int at, Tile* tile) {
   const Floats t = Load(&tile->transmission[at]);
   const Floats q = 0.5F * (e.a * dx * dx + e.c * dy * dy) + e.b * dy * dx;
   Floats alpha = e.opacity * Exp(-(q < e.cutoff ? q : Floats{} + e.cutoff));
@@ -89,9 +91,12 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void Blend(
     if (i % kBetweenLooks == kBetweenLooks - 1 && IsDark(*tile)) return;
     const Ellipse& e = ellipses[order[i]];
     const Rows rows(e.v - tile->top, e.half_height);
-    const Floats dx = columns - (e.u - tile->left);
     for (int row = rows.first; row < rows.end; ++row) {
-      BlendRow(e, dx, static_cast<float>(row) + 0.5F - (e.v - tile->top), row, tile);
+      const float dy = static_cast<float>(row) + 0.5F - (e.v - tile->top);
+      for (int part = 0; part < kTile; part += kLanes) {
+        const Floats dx = columns - (e.u - tile->left - static_cast<float>(part));
+        BlendRow(e, dx, dy, kTile * row + part, tile);
+      }
     }
   }
 }
