@@ -33,7 +33,6 @@
 #include "twin/parallel.h"
 #include "twin/plain_name.h"
 #include "twin/quote.h"
-#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -105,18 +104,12 @@ void AddPrediction(const std::string& word, EvalArguments* arguments) {
 }
 
 void ComparePictures(const EvalArguments& arguments, Evaluation* evaluation) {
-  const InterruptWatch watch;
   Progress progress(0);
   ImageOptions options = arguments.images;
   options.threads = arguments.threads;
   options.progress = [&](double part) { progress.Show(part, "pictures"); };
   EvaluatedRecording& evaluated = evaluation->recordings[0];
-  try {
-    evaluated.images = EvaluateImages(options, &evaluated);
-  } catch (const Stopped&) {
-    Tell("physpring: stopped; nothing was written\n");
-    throw Interrupted{watch.signal()};
-  }
+  evaluated.images = UnlessStopped([&] { return EvaluateImages(options, &evaluated); });
 }
 
 // Pictures, and predictions of other methods, are of one recording.

@@ -9,7 +9,6 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/progress.h"
@@ -19,7 +18,6 @@
 #include "splats/splat_file.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
-#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -32,18 +30,12 @@ struct FitSplatsArguments {
 };
 
 SplatFit Fit(const PictureFolder& pictures, SplatFitOptions options) {
-  const InterruptWatch watch;
   Progress progress(0);
   options.progress = [&](int iteration, double loss) {
     progress.Show(static_cast<double>(iteration) / options.iterations,
                   fmt::format("iteration {}, loss {:.4f}", iteration, loss));
   };
-  try {
-    return FitSplats(pictures, options);
-  } catch (const Stopped&) {
-    Tell("physpring: stopped; nothing was written\n");
-    throw Interrupted{watch.signal()};
-  }
+  return UnlessStopped([&] { return FitSplats(pictures, options); });
 }
 
 void PrintErrors(const PictureFolder& pictures, const SplatFit& fit) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/interrupt.h"
 
-#include "twin/stop_request.h"
+#include "cli/message.h"
 
 namespace physpring {
 namespace {
@@ -37,5 +37,10 @@ InterruptWatch::~InterruptWatch() {
 }
 
 int InterruptWatch::signal() const { return noted_signal; }
+
+void StopWithoutOutput(const InterruptWatch& watch) {
+  Tell("physpring: stopped; nothing was written\n");
+  throw Interrupted{watch.signal()};
+}
 
 }  // namespace physpring

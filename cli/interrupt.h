@@ -6,6 +6,8 @@
 
 #include <csignal>
 
+#include "twin/stop_request.h"
+
 namespace physpring {
 
 // Thrown by a command that stopped early because of a signal and has said so: the program ends with
@@ -29,6 +31,20 @@ class InterruptWatch {
  private:
   struct sigaction old_interrupt_, old_terminate_;
 };
+
+// Says that the command stopped and nothing was written. Throws Interrupted.
+[[noreturn]] void StopWithoutOutput(const InterruptWatch& watch);
+
+// What `work` returns, which writes nothing: where a signal stops it, ends by StopWithoutOutput.
+template <class Work>
+auto UnlessStopped(const Work& work) {
+  const InterruptWatch watch;
+  try {
+    return work();
+  } catch (const Stopped&) {
+    StopWithoutOutput(watch);
+  }
+}
 
 }  // namespace physpring
 

@@ -11,7 +11,6 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
 #include "cli/picture_words.h"
@@ -20,7 +19,6 @@
 #include "rollout/mujoco_library.h"
 #include "twin/error.h"
 #include "twin/output_lock.h"
-#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
@@ -60,17 +58,11 @@ std::string ListEffects() {
 
 // Ends by Interrupted where a signal comes before there is anything to write.
 Recording Simulate(const std::string& scene, RecordOptions options) {
-  const InterruptWatch watch;
   Progress progress(0);
   if (!options.pictures.folder.empty()) {  // otherwise it does not take long
     options.progress = [&](double part) { progress.Show(part, "pictures"); };
   }
-  try {
-    return RecordScene(scene, options);
-  } catch (const Stopped&) {
-    Tell("physpring: stopped; nothing was written\n");
-    throw Interrupted{watch.signal()};
-  }
+  return UnlessStopped([&] { return RecordScene(scene, options); });
 }
 
 void Run(const std::string& scene, const std::string& output, bool force,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/parallel.h"
+#include "splats/in_parallel.h"
 #include "twin/rotation.h"
 
 namespace physpring {
@@ -14,9 +14,8 @@ namespace {
 using Matrix = Eigen::Matrix3f;
 using Vector = Eigen::Vector3f;
 
-constexpr double kRigid = 0.05;      // e
-constexpr double kNear = 1e-6;       // m: keeps the weight of a node that is a splat finite
-constexpr int kSplatsAtOnce = 2048;  // splats that a thread takes at once
+constexpr double kRigid = 0.05;  // e
+constexpr double kNear = 1e-6;   // m: keeps the weight of a node that is a splat finite
 
 }  // namespace
 
@@ -77,31 +76,26 @@ Eigen::Matrix3d SplatMotion::Deformation(int node, const Points& nodes,
 PlacedSplats SplatMotion::At(const Points& nodes, int threads) const {
   const int node_count = static_cast<int>(nodes.cols()), count = splats_.count();
   std::vector<Matrix> deformations(node_count), rotations(node_count);
-  ParallelFor((node_count + kSplatsAtOnce - 1) / kSplatsAtOnce, threads, [&](int block) {
-    for (int n = block * kSplatsAtOnce; n < std::min(node_count, (block + 1) * kSplatsAtOnce);
-         ++n) {
-      Eigen::Matrix3d rotation;
-      deformations[n] = Deformation(n, nodes, &rotation).cast<float>();
-      rotations[n] = rotation.cast<float>();
-    }
+  InParallel(node_count, threads, [&](int n) {
+    Eigen::Matrix3d rotation;
+    deformations[n] = Deformation(n, nodes, &rotation).cast<float>();
+    rotations[n] = rotation.cast<float>();
   });
   PlacedSplats placed = start_;
   placed.turn.resize(9, count);
-  ParallelFor((count + kSplatsAtOnce - 1) / kSplatsAtOnce, threads, [&](int block) {
-    for (int i = block * kSplatsAtOnce; i < std::min(count, (block + 1) * kSplatsAtOnce); ++i) {
-      Vector x = Vector::Zero();
-      Matrix f = Matrix::Zero();
-      for (const Anchor& anchor : anchors_[i]) {
-        if (anchor.weight == 0) continue;
-        const Matrix& own = deformations[anchor.node];
-        const Vector arm = splats_.position.col(i) - nodes_start_.col(anchor.node).cast<float>();
-        x += anchor.weight * (nodes.col(anchor.node).cast<float>() + own * arm);
-        f += anchor.weight * own;
-      }
-      placed.position.col(i) = x;
-      placed.SetCovariance(i, f * start_.Covariance(i) * f.transpose());
-      placed.turn.col(i) = rotations[anchors_[i][0].node].reshaped();
+  InParallel(count, threads, [&](int i) {
+    Vector x = Vector::Zero();
+    Matrix f = Matrix::Zero();
+    for (const Anchor& anchor : anchors_[i]) {
+      if (anchor.weight == 0) continue;
+      const Matrix& own = deformations[anchor.node];
+      const Vector arm = splats_.position.col(i) - nodes_start_.col(anchor.node).cast<float>();
+      x += anchor.weight * (nodes.col(anchor.node).cast<float>() + own * arm);
+      f += anchor.weight * own;
     }
+    placed.position.col(i) = x;
+    placed.SetCovariance(i, f * start_.Covariance(i) * f.transpose());
+    placed.turn.col(i) = rotations[anchors_[i][0].node].reshaped();
   });
   return placed;
 }

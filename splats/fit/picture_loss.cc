@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "splats/fit/free_ellipse.h"
+#include "splats/in_parallel.h"
 #include "splats/projection.h"
 #include "splats/tile.h"
 #include "splats/tile_bins.h"
@@ -15,19 +16,15 @@
 namespace physpring {
 namespace {
 
-constexpr int kBlock = 1024;  // splats that a thread takes at once
-
 // What the camera sees, the nearest first.
 std::vector<FreeEllipse> ProjectAll(const FreeSplats& splats, const PinholeCamera& camera,
                                     int threads) {
   const int count = static_cast<int>(splats.cols());
   std::vector<FreeEllipse> all(static_cast<std::size_t>(count));
   std::vector<char> seen(static_cast<std::size_t>(count));
-  ParallelFor((count + kBlock - 1) / kBlock, threads, [&](int block) {
-    for (int i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-      all[i].splat = i;
-      seen[i] = ProjectFree(splats.col(i), camera, &all[i]) ? 1 : 0;
-    }
+  InParallel(count, threads, [&](int i) {
+    all[i].splat = i;
+    seen[i] = ProjectFree(splats.col(i), camera, &all[i]) ? 1 : 0;
   });
   std::vector<FreeEllipse> sorted;
   for (int i = 0; i < count; ++i) {
@@ -133,11 +130,9 @@ double AddPictureLoss(const FreeSplats& splats, const PinholeCamera& camera, con
     for (const std::uint32_t ellipse : bins.In(tile)) bars[ellipse] += parts[part++];
   }
   const int count = static_cast<int>(ellipses.size());
-  ParallelFor((count + kBlock - 1) / kBlock, threads, [&](int block) {
-    for (int i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-      const int splat = ellipses[i].splat;
-      ProjectFreeAdjoint(splats.col(splat), camera, bars[i], gradient->col(splat));
-    }
+  InParallel(count, threads, [&](int i) {
+    const int splat = ellipses[i].splat;
+    ProjectFreeAdjoint(splats.col(splat), camera, bars[i], gradient->col(splat));
   });
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
