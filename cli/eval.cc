@@ -2,15 +2,12 @@
 // physpring eval: a twin and recordings of its object -> how far it is from them.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,17 +28,9 @@
 #include "twin/dataset.h"
 #include "twin/error.h"
 #include "twin/parallel.h"
-#include "twin/plain_name.h"
-#include "twin/quote.h"
 
 namespace physpring {
 namespace {
-
-// Keys of the report, beside which a prediction has its own.
-constexpr std::string_view kTakenNames[] = {
-    "twin",     "precision", "levels",  "recordings",     "motionless", "rigid",
-    "linear",   "file",      "frames",  "trained_on",     "anchored",   "images",
-    "pictures", "splats",    "cameras", "first_predicted"};
 
 struct EvalArguments {
   std::string twin;
@@ -94,9 +83,10 @@ void AddPrediction(const std::string& word, EvalArguments* arguments) {
   if (equals == std::string::npos || equals + 1 == word.size())
     fail(word + " is not NAME=FILE.npz");
   const std::string name = word.substr(0, equals);
-  if (!IsPlainName(name)) fail(fmt::format("{} is no name: use {}", Quote(name), kPlainName));
-  if (std::find(std::begin(kTakenNames), std::end(kTakenNames), name) != std::end(kTakenNames)) {
-    fail(name + " means something else in the report");
+  try {
+    ExpectPredictionName(name);
+  } catch (const Error& error) {
+    fail(error.what());
   }
   if (!arguments->predictions.emplace(name, word.substr(equals + 1)).second) {
     fail(name + " is given twice");

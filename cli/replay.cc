@@ -204,14 +204,16 @@ void AddReplayCommand(CLI::App& app) {
           "of the scene, where its level is above 0: to start from the recording and to be "
           "compared with it")
       ->type_name("TWIN");
-  command
-      ->add_option("--video", arguments->video,
-                   "film it (.mp4, or _%04d.png for a picture a frame); needs ffmpeg")
-      ->type_name("FILE");
+  CLI::Option* video =
+      command
+          ->add_option("--video", arguments->video,
+                       "film it (.mp4, or _%04d.png for a picture a frame); needs ffmpeg")
+          ->type_name("FILE");
   command
       ->add_option("--cameras", arguments->cameras,
                    "in the video, side by side; default: the first one of the scene")
       ->delimiter(',')
+      ->needs(video)
       ->type_name("NAME,...");
   AddChoice(command, "--quality", &arguments->quality, kQualityWords,
             "of pictures; high: shadows, smooth edges, round shapes");

@@ -261,19 +261,22 @@ void AddSweepOptions(CLI::App* command, RolloutArguments* arguments) {
 }
 
 void AddPictureOptions(CLI::App* command, RolloutArguments* arguments) {
-  command
-      ->add_option(
-          "--video", arguments->video,
-          "film the first episode (.mp4, or _%04d.png for a picture a frame); needs ffmpeg")
-      ->type_name("FILE");
+  CLI::Option* video =
+      command
+          ->add_option(
+              "--video", arguments->video,
+              "film the first episode (.mp4, or _%04d.png for a picture a frame); needs ffmpeg")
+          ->type_name("FILE");
   command->add_option("--films", arguments->films, "film so many episodes")
       ->check(WholeNumberBetween(1, 1000000))
+      ->needs(video)
       ->type_name("N")
       ->capture_default_str();
   command
       ->add_option("--cameras", arguments->cameras,
                    "in the video, side by side; default: the first one of the task")
       ->delimiter(',')
+      ->needs(video)
       ->type_name("NAME,...");
   AddChoice(command, "--quality", &arguments->quality, kQualityWords,
             "of pictures; high: shadows, smooth edges, round shapes");

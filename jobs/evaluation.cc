@@ -1,16 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "jobs/evaluation.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "jobs/fit_report.h"
 #include "tracker/anchor.h"
+#include "twin/error.h"
 #include "twin/evaluate.h"
 #include "twin/npz_fields.h"
 #include "twin/numbering.h"
+#include "twin/plain_name.h"
+#include "twin/quote.h"
 #include "twin/regrasp.h"
 
 namespace physpring {
+
+namespace {
+
+// Keys of the report, beside which a prediction has its own.
+constexpr std::string_view kTakenNames[] = {
+    "twin",     "precision", "levels",  "recordings",     "motionless", "rigid",
+    "linear",   "file",      "frames",  "trained_on",     "anchored",   "images",
+    "pictures", "splats",    "cameras", "first_predicted"};
+
+}  // namespace
+
+void ExpectPredictionName(const std::string& name) {
+  if (!IsPlainName(name)) {
+    throw Error(
+        fmt::format("{} cannot name a prediction; its name must be {}", Quote(name), kPlainName));
+  }
+  if (std::find(std::begin(kTakenNames), std::end(kTakenNames), name) != std::end(kTakenNames)) {
+    throw Error(fmt::format("{} cannot name a prediction: it means something else in the report",
+                            Quote(name)));
+  }
+}
 
 Baseline ReadPrediction(const std::string& name, const std::string& path,
                         const Recording& recording) {

@@ -21,6 +21,10 @@ struct EvaluationOptions {
   std::vector<Baseline> others = {};  // predictions of other methods, of the one recording
 };
 
+// Throws Error unless the prediction of another method may be called so: a plain name that means
+// nothing else in the report.
+void ExpectPredictionName(const std::string& name);
+
 // The prediction of another method: array `particles` (T, N + M, 3) in m, for all frames of the
 // recording. Throws Error, one line that begins with the path.
 Baseline ReadPrediction(const std::string& name, const std::string& path,

@@ -11,10 +11,12 @@
 
 #include "pictures/png_file.h"
 #include "twin/atomic_file.h"
+#include "twin/bounded_fields.h"
 #include "twin/error.h"
 #include "twin/json_fields.h"
 #include "twin/plain_name.h"
 #include "twin/quote.h"
+#include "twin/recording_clocks.h"
 
 namespace physpring {
 namespace {
@@ -26,28 +28,6 @@ constexpr int kVersion = 1, kMostPixels = 8192, kMostFrames = 1000000;
 constexpr double kLeastFocal = 1e-3, kFarthestPixel = 1e6;  // pixels
 constexpr double kFarthest = 1000;                          // m
 constexpr double kLeastUnit = 1e-6, kMostUnit = 0.01;       // m, of depths
-
-int CountWithin(const JsonFields& json, const std::string& key, int least, int most) {
-  const int count = json.Count(key);
-  if (count < least || count > most) {
-    json.Fail(key, fmt::format("is {}; must be {} to {}", count, least, most));
-  }
-  return count;
-}
-
-double PositiveNumber(const JsonFields& json, const std::string& key) {
-  const double number = json.Number(key);
-  if (!(number > 0)) json.Fail(key, fmt::format("is {}; must be above 0", number));
-  return number;
-}
-
-double NumberWithin(const JsonFields& json, const std::string& key, double least, double most) {
-  const double number = json.Number(key);
-  if (!(number >= least && number <= most)) {
-    json.Fail(key, fmt::format("is {}; must be {} to {}", number, least, most));
-  }
-  return number;
-}
 
 // A name becomes a folder.
 std::string NameIn(const JsonFields& json) {
@@ -79,12 +59,12 @@ void ReadPose(const JsonFields& json, PinholeCamera* view) {
 RecordedCamera ReadCamera(const JsonFields& json) {
   json.ExpectOnly({"name", "width", "height", "fx", "fy", "cx", "cy", "pose"});
   RecordedCamera camera{NameIn(json), {}};
-  camera.view.width = CountWithin(json, "width", 1, kMostPixels);
-  camera.view.height = CountWithin(json, "height", 1, kMostPixels);
-  camera.view.fx = NumberWithin(json, "fx", kLeastFocal, kFarthestPixel);
-  camera.view.fy = NumberWithin(json, "fy", kLeastFocal, kFarthestPixel);
-  camera.view.cx = NumberWithin(json, "cx", -kFarthestPixel, kFarthestPixel);
-  camera.view.cy = NumberWithin(json, "cy", -kFarthestPixel, kFarthestPixel);
+  camera.view.width = CountBetween(json, "width", 1, kMostPixels);
+  camera.view.height = CountBetween(json, "height", 1, kMostPixels);
+  camera.view.fx = NumberBetween(json, "fx", kLeastFocal, kFarthestPixel);
+  camera.view.fy = NumberBetween(json, "fy", kLeastFocal, kFarthestPixel);
+  camera.view.cx = NumberBetween(json, "cx", -kFarthestPixel, kFarthestPixel);
+  camera.view.cy = NumberBetween(json, "cy", -kFarthestPixel, kFarthestPixel);
   ReadPose(json, &camera.view);
   return camera;
 }
@@ -113,11 +93,11 @@ PictureFolder::PictureFolder(const std::string& path) : path_(path) {
   if (json.Text("format") != kFormat) {
     json.Fail("format", fmt::format("must be {}", Quote(kFormat)));
   }
-  CountWithin(json, "version", kVersion, kVersion);
-  fps_ = PositiveNumber(json, "fps");
-  frames_ = CountWithin(json, "frames", 1, kMostFrames);
+  CountBetween(json, "version", kVersion, kVersion);
+  fps_ = NumberBetween(json, "fps", kLeastFps, kMostFps);
+  frames_ = CountBetween(json, "frames", 1, kMostFrames);
   if (json.Has("depth_unit")) {
-    depth_unit_ = NumberWithin(json, "depth_unit", kLeastUnit, kMostUnit);
+    depth_unit_ = NumberBetween(json, "depth_unit", kLeastUnit, kMostUnit);
   }
   for (const JsonFields& camera : json.Objects("cameras")) {
     cameras_.push_back(ReadCamera(camera));

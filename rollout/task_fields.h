@@ -4,10 +4,9 @@
 #define PHYSPRING_ROLLOUT_TASK_FIELDS_H_
 
 #include <Eigen/Core>
-#include <string>
-#include <vector>
 
 #include "rollout/pose.h"
+#include "twin/bounded_fields.h"
 #include "twin/json_fields.h"
 
 namespace physpring {
@@ -22,15 +21,7 @@ struct Box {
 constexpr double kFarthest = 1000;  // m
 constexpr double kTurn = 360;
 
-// Each throws Error unless the key holds that, within the bounds; those with a default take it
-// where the key is missing.
-double NumberBetween(const JsonFields& fields, const std::string& key, double least, double most);
-std::vector<double> NumbersBetween(const JsonFields& fields, const std::string& key, double least,
-                                   double most);
-double PositiveNumber(const JsonFields& fields, const std::string& key, double most);
-double PositiveNumberOr(const JsonFields& fields, const std::string& key, double missing,
-                        double most);
-int CountBetween(const JsonFields& fields, const std::string& key, int least, int most);
+// Each throws Error unless the keys hold that, within the bounds.
 Pose ReadPose(const JsonFields& fields);  // keys position, quaternion: both optional
 Box ReadBox(const JsonFields& fields);    // keys position, size, yaw (degrees, optional)
 

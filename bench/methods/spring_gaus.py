@@ -13,13 +13,40 @@ is in our units, so that its start is searched for (`STARTS`), and the gradient'
 frames, as one through all of them does not fit the time.
 """
 
+import copy
+
 import torch
 
 NEIGHBOURS, FIXED, POWER = 256, 16, 0.5
 STARTS = (0.3, 1.0, 3.0, 10.0, 30.0)  # stiffness k, in N for 1 g an anchor
 DAMPING_TIME = 1e-4  # s: dashpot constant by stiffness, as theirs
 SUBSTEPS = 100  # a frame
-EPOCHS, HORIZON, RATE = 2, 2, 0.03
+EPOCHS, HORIZON, RATES = 8, 7, (0.03, 0.1)
+
+
+@torch.compile(dynamic=False)
+def step(x, v, held, held_v, network, forces, ground, h):
+    """One sub-step of h s. x, v: anchors (n,3); held, held_v: hands (c,3); network: neighbours and
+    rest lengths (n,k); forces: stiffness N/m, dashpots N s/m (n,k), gravity (3), mass of an anchor;
+    ground: its height and the part of the velocity that is kept on it, or none."""
+    near, rest = network
+    stiffness, damping, gravity, mass = forces
+    everything, all_v = torch.cat([x, held]), torch.cat([v, held_v])
+    offset = everything[near] - x[:, None]
+    length = offset.norm(dim=2) + 1e-12
+    way = offset / length[..., None]
+    stretch = length / rest - 1
+    force = stiffness * (length - rest) * (1 + stretch.abs()) ** POWER
+    force = force + damping * ((all_v[near] - v[:, None]) * way).sum(2)
+    v = v + h * ((force[..., None] * way).sum(1) / mass + gravity)
+    x = x + h * v
+    if ground is None:
+        return x, v
+    height, keep = ground
+    below = (x[:, 2:] <= height).float()
+    sliding = torch.cat([keep, keep, torch.zeros(1)])
+    v = v * (1 - below) + below * sliding * v
+    return torch.cat([x[:, :2], torch.maximum(x[:, 2:], height)], 1), v
 
 
 class SpringGaus(torch.nn.Module):
@@ -33,8 +60,8 @@ class SpringGaus(torch.nn.Module):
         neighbours = min(NEIGHBOURS, len(everything) - 1)
         length, near = torch.cdist(self.anchors, everything).topk(neighbours + 1, largest=False)
         self.length, self.near = length[:, 1:].clamp(min=1e-6), near[:, 1:]
-        self.mass = recorded.mass / self.free
-        scale = start_stiffness * self.mass * 1e3
+        self.mass = torch.tensor(recorded.mass / self.free)
+        scale = start_stiffness * float(self.mass) * 1e3
         self.log_stiffness = torch.nn.Parameter(
             torch.full((self.free,), float(torch.log10(torch.tensor(scale)))))
         self.softness = torch.nn.Parameter(torch.zeros(1))
@@ -51,36 +78,23 @@ class SpringGaus(torch.nn.Module):
             k = k * torch.cat([torch.ones(FIXED), soft])
         return k, k * 10 ** self.log_damping
 
-    def step(self, x, v, held, held_v, springs, h):
-        stiffness, damping = springs
-        everything, all_v = torch.cat([x, held]), torch.cat([v, held_v])
-        offset = everything[self.near] - x[:, None]
-        length = offset.norm(dim=2) + 1e-12
-        way = offset / length[..., None]
-        stretch = length / self.length - 1
-        force = stiffness * (length - self.length) * (1 + stretch.abs()) ** POWER
-        force = force + damping * ((all_v[self.near] - v[:, None]) * way).sum(2)
-        v = v + h * ((force[..., None] * way).sum(1) / self.mass + self.recorded.gravity)
-        x = x + h * v
-        if self.recorded.ground is None:
-            return x, v
-        below = (x[:, 2:] <= self.recorded.ground).float()
-        keep = (1.2 * torch.sigmoid(self.friction) - 0.1).clamp(0, 1)
-        sliding = torch.cat([keep, keep, torch.zeros(1)])
-        v = v * (1 - below) + below * sliding * v
-        x = torch.cat([x[:, :2], torch.maximum(x[:, 2:], torch.tensor(self.recorded.ground))], 1)
-        return x, v
-
     def frame(self, x, v, t, substeps):
         """From frame t to t + 1."""
         one, other = self.recorded.controllers[t], self.recorded.controllers[t + 1]
-        h = 1 / self.recorded.fps / substeps
+        h = torch.tensor(1 / self.recorded.fps / substeps)
         held_v = (other - one) * self.recorded.fps
-        springs = self.springs()
+        network = (self.near, self.length)
+        forces = (*self.springs(), self.recorded.gravity, self.mass)
         for i in range(substeps):
             held = one + (other - one) * (i / substeps)
-            x, v = self.step(x, v, held, held_v, springs, h)
+            x, v = step(x, v, held, held_v, network, forces, self.ground(), h)
         return x, v
+
+    def ground(self):
+        if self.recorded.ground is None:
+            return None
+        keep = (1.2 * torch.sigmoid(self.friction) - 0.1).clamp(0, 1)
+        return torch.tensor(self.recorded.ground), keep
 
     def rollout(self, frames, substeps):
         x, v = self.anchors, torch.zeros_like(self.anchors)
@@ -124,25 +138,25 @@ def run_epoch(model, optimizer):
 
 
 def predict(recorded, say, others=()):
-    """Particles in all frames (T,N+M,3). The start is the one that predicts the first third of the
-    frames for fitting best; then those parameters are kept that predict all of them best."""
-    scores = {start: mean_square(SpringGaus(recorded, start), recorded.train_frames // 3)
+    """Particles in all frames (T,N+M,3). The start is the one that predicts the frames for fitting
+    best; then, of all rates and epochs, those parameters are kept that predict them best."""
+    scores = {start: mean_square(SpringGaus(recorded, start), recorded.train_frames)
               for start in STARTS}
     for start, score in scores.items():
         say(f"start {start:g}: {1e3 * score ** 0.5:.1f} mm")
     start = min(scores, key=scores.get)
     if scores[start] == float("inf"):
         raise RuntimeError("unstable from every start")
-    model = SpringGaus(recorded, start)
-    optimizer = torch.optim.Adam(model.parameters(), lr=RATE)
-    best, kept = float("inf"), None
-    for epoch in range(EPOCHS + 1):
-        score = mean_square(model, recorded.train_frames)
-        say(f"epoch {epoch}: {1e3 * score ** 0.5:.1f} mm")
-        if score < best:
-            best, kept = score, {key: value.clone() for key, value in model.state_dict().items()}
-        if epoch == EPOCHS or not run_epoch(model, optimizer):
-            break
-    model.load_state_dict(kept)
+    best, kept = scores[start], SpringGaus(recorded, start)
+    for rate in RATES:
+        model = SpringGaus(recorded, start)
+        optimizer = torch.optim.Adam(model.parameters(), lr=rate)
+        for epoch in range(EPOCHS):
+            if not run_epoch(model, optimizer):
+                break
+            score = mean_square(model, recorded.train_frames)
+            say(f"rate {rate:g}, epoch {epoch}: {1e3 * score ** 0.5:.1f} mm")
+            if score < best:
+                best, kept = score, copy.deepcopy(model)
     with torch.no_grad():
-        return model.rollout(recorded.frames, SUBSTEPS)
+        return kept.rollout(recorded.frames, SUBSTEPS)

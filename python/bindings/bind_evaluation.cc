@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "jobs/evaluation.h"
+#include "jobs/image_evaluation.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
@@ -18,10 +25,36 @@
 namespace physpring {
 namespace {
 
+// Of other methods: (T, particles, 3) in m.
+using GivenPredictions = std::map<std::string, Numbers<3>>;
+
+std::vector<Baseline> BaselinesOf(const GivenPredictions& given, const Recording& recording) {
+  std::vector<Baseline> baselines;
+  for (const auto& [name, array] : given) {
+    ExpectPredictionName(name);
+    const std::string what = "prediction " + name;
+    std::vector<Points> frames = FramesFrom(array, recording.particle_count(), what.c_str());
+    const auto count = static_cast<int>(frames.size());
+    if (count != recording.frame_count()) {
+      throw Error(fmt::format("{} has {} frames, but the recording has {}", what, count,
+                              recording.frame_count()));
+    }
+    baselines.push_back({name, name, std::move(frames)});
+  }
+  return baselines;
+}
+
 Evaluation EvaluateAll(const GivenTwin& twin, const GivenRecordings& recordings,
-                       const EvaluationOptions& options, int threads) {
+                       EvaluationOptions options, const GivenPredictions& predictions,
+                       ImageOptions images, int threads) {
   if (recordings.empty()) throw Error("no recording is given");
   Checked(twin);
+  const bool of_one = !predictions.empty() || !images.pictures.empty();
+  if (of_one && recordings.size() > 1) {
+    throw Error(fmt::format("predictions and images are of one recording; there are {}",
+                            recordings.size()));
+  }
+  options.others = BaselinesOf(predictions, RecordingFor(twin.twin, *recordings[0]));
   Evaluation evaluation{twin.path, twin.twin, options.predict.single_precision, options.anchor, {}};
   const int count = static_cast<int>(recordings.size());
   evaluation.recordings.resize(recordings.size());
@@ -30,6 +63,9 @@ Evaluation EvaluateAll(const GivenTwin& twin, const GivenRecordings& recordings,
       evaluation.recordings[i] = EvaluateRecording(
           twin.twin, recordings[i]->entry, RecordingFor(twin.twin, *recordings[i]), options);
     });
+    if (images.pictures.empty()) return;
+    images.threads = threads;
+    evaluation.recordings[0].images = EvaluateImages(images, evaluation.recordings.data());
   });
   std::vector<std::string> warnings;
   for (int i = 0; i < count; ++i) {
@@ -83,12 +119,16 @@ void BindEvaluation(nb::module_& module) {
   module.def(
       "evaluate",
       [](const GivenTwin& twin, const GivenRecordings& recordings, std::optional<int> substeps,
-         bool single_precision, std::optional<int> anchor, int threads) {
+         bool single_precision, std::optional<int> anchor, const GivenPredictions& predictions,
+         const std::string& pictures, const std::string& splats,
+         const std::vector<std::string>& cameras, int threads) {
         return EvaluateAll(twin, recordings,
-                           {{single_precision, substeps.value_or(0)}, anchor.value_or(0)}, threads);
+                           {{single_precision, substeps.value_or(0)}, anchor.value_or(0)},
+                           predictions, {pictures, splats, cameras}, threads);
       },
       nb::arg("twin"), nb::arg("recordings"), nb::arg("substeps").none(),
-      nb::arg("single_precision"), nb::arg("anchor").none(), nb::arg("threads"));
+      nb::arg("single_precision"), nb::arg("anchor").none(), nb::arg("predictions"),
+      nb::arg("pictures"), nb::arg("splats"), nb::arg("cameras"), nb::arg("threads"));
   module.def("predict", &PredictNodes, nb::arg("twin"), nb::arg("recording"), nb::arg("level"),
              nb::arg("substeps").none(), nb::arg("single_precision"));
 }

@@ -6,11 +6,11 @@ import dataclasses
 import html
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from physpring import _core
 from physpring._recordings import (
@@ -115,18 +115,31 @@ def evaluate(twin: _core.Twin | str | os.PathLike,
              substeps: int | None = None,
              precision: str = 'double',
              anchor: int | None = None,
+             predictions: Mapping[str, ArrayLike] | None = None,
+             images: str | os.PathLike | None = None,
+             splats: str | os.PathLike | None = None,
+             cameras: Sequence[str] = (),
              threads: int | None = 1) -> Evaluation:
     """Predicts recordings of the twin's object with every level of it, as `physpring eval` does.
 
     recordings: a Recording, a path, or several; a folder stands for its `heldout` ones. anchor: also
-    predict anew from this frame on, from the state that `track` finds there. threads: recordings at
-    the same time. A twin that is no better than what needs no twin is a PhyspringWarning.
+    predict anew from this frame on, from the state that `track` finds there. threads: recordings, or
+    pictures, at the same time. A twin that is no better than what needs no twin is a
+    PhyspringWarning.
+
+    Of one recording, also: predictions: {name: (T, N + M, 3) particles, m} of other methods, judged
+    in the same way. images: folder of its pictures (`record --pictures`); they are compared with
+    what `cameras` of it, or all, see of the file `splats`, which `physpring fit-splats` makes.
     """
     _expect_counts(substeps=substeps, anchor=anchor)
+    if (images is None) != (splats is None):
+        raise _core.Error('images and splats go together')
     one, given = twin_of(twin), recordings_of(recordings, 'heldout')
+    others = {name: np.ascontiguousarray(array, float) for name, array in (predictions or {}).items()}
     return Evaluation(
-        _core.evaluate(one, given, substeps, precision_of(precision), anchor, threads_of(threads)),
-        given)
+        _core.evaluate(one, given, substeps, precision_of(precision), anchor, others,
+                       os.fspath(images or ''), os.fspath(splats or ''), list(cameras),
+                       threads_of(threads)), given)
 
 
 def predict(twin: _core.Twin | str | os.PathLike,

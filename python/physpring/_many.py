@@ -11,7 +11,6 @@ import os
 import pathlib
 import shutil
 import tempfile
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -19,7 +18,7 @@ from physpring import _core
 from physpring._mujoco import adapter_file, scenes, task_folder
 from physpring._recordings import RecordingLike, number, recordings_of, seed_of, threads_of, whole
 from physpring._training import train
-from physpring._warnings import PhyspringWarning
+from physpring._warnings import warn
 
 _TRIES = 3  # of a piece of work whose worker is lost
 
@@ -92,7 +91,7 @@ def sweep(task: str | os.PathLike,
            'seed': seed, 'action_noise': action_noise, 'start_noise': start_noise, 'states': states}
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary if output is None else output)
-        _run(job, folder, first, 0)  # makes the folder, or says what is wrong with it
+        warn(_run(job, folder, first, 0))  # makes the folder, or says what is wrong with it
         jobs = {number: (job, number) for number in range(first, first + episodes)
                 if not _is_kept(folder, levels, number)}
         done = episodes - len(jobs)
@@ -214,11 +213,12 @@ def _episode(job: Mapping[str, Any], number: int) -> dict[str, bytes]:
                 for path in sorted(root.rglob('*')) if path.is_file()}
 
 
-def _run(job: Mapping[str, Any], folder: pathlib.Path, first: int, episodes: int) -> None:
-    """Episodes of a job, into a folder."""
-    scenes().sweep(job['task'], os.fspath(folder), job['levels'], job['policy'],
-                   job['policy_adapter'], first, episodes, job['seed'], job['action_noise'],
-                   job['start_noise'], 1, job['states'])
+def _run(job: Mapping[str, Any], folder: pathlib.Path, first: int, episodes: int) -> list[str]:
+    """Episodes of a job, into a folder. Returns warnings of the task."""
+    _, lines = scenes().sweep(job['task'], os.fspath(folder), job['levels'], job['policy'],
+                              job['policy_adapter'], first, episodes, job['seed'],
+                              job['action_noise'], job['start_noise'], 1, job['states'])
+    return lines
 
 
 def _train(name: str, given: list[_core.Recording], options: dict[str, Any]) -> bytes:
@@ -244,7 +244,7 @@ def _is_kept(folder: pathlib.Path, levels: Sequence[int], number: int) -> bool:
     try:
         return all(scenes().is_finished(os.fspath(folder), level, number) for level in levels)
     except _core.Error as error:
-        warnings.warn(f'{error}; the episode is run again', PhyspringWarning, stacklevel=3)
+        warn([f'{error}; the episode is run again'])
         return False
 
 

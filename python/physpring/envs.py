@@ -26,6 +26,7 @@ from physpring import _core
 from physpring._mujoco import adapter_file, scenes, task_folder
 from physpring._recordings import number, seed_of, threads_of, whole
 from physpring._simulation import _doubles
+from physpring._warnings import warn
 
 TASKS = {'RopeRouting': 'rope_routing', 'ToyPacking': 'toy_packing', 'TPush': 't_push',
          'ClothFolding': 'cloth_folding'}
@@ -47,6 +48,7 @@ class _Setting:
         whole('height', height, 0, 8192)
         self.task = scenes().Task.load(os.fspath(task_folder(task)), level, quality, width, height,
                                        vary_looks, os.fspath(sample))
+        warn(self.task.warnings)
         self.seen = obs.split('+')
         self.observation_space = self._observations()
         self.action_space = self._actions()

@@ -126,6 +126,14 @@ TEST_F(RolloutTest, LosesNoFinishedEpisodeHoweverOftenItIsKilled) {
   EXPECT_EQ(Finished("killed"), Finished("whole"));
 }
 
+TEST_F(RolloutTest, WhatIsOfAVideoNeedsOne) {
+  for (const std::string option : {"--cameras", "--films"}) {
+    const ProgramResult result = Run({"--policy", "random", option, "2"});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.errors, HasSubstr(option + " requires --video"));
+  }
+}
+
 TEST_F(RolloutTest, WritesAVideo) {
   if (std::system("command -v ffprobe >/dev/null") != 0) GTEST_SKIP() << "no ffmpeg here";
   const ProgramResult result =

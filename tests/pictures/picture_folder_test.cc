@@ -110,15 +110,15 @@ TEST_P(BadCameras, AreRefusedInALine) {
 INSTANTIATE_TEST_SUITE_P(
     Of, BadCameras,
     ::testing::Values(BadFile{"physpring pictures", "other", "must be 'physpring pictures'"},
-                      BadFile{"\"version\": 1", "\"version\": 2", "is 2; must be 1 to 1"},
-                      BadFile{"\"fps\": 30", "\"fps\": 0", "is 0; must be above 0"},
-                      BadFile{"\"frames\": 2", "\"frames\": 0", "must be 1 to"},
-                      BadFile{"\"width\": 6", "\"width\": 100000", "must be 1 to 8192"},
+                      BadFile{"\"version\": 1", "\"version\": 2", "holds 2, expected 1 to 1"},
+                      BadFile{"\"fps\": 30", "\"fps\": 0", "holds 0, expected 0.1 to"},
+                      BadFile{"\"frames\": 2", "\"frames\": 0", "expected 1 to"},
+                      BadFile{"\"width\": 6", "\"width\": 100000", "expected 1 to 8192"},
                       BadFile{"front", "../front", "must be letters, digits"},
                       BadFile{"[1, 0", "[2, 0", "is no rotation and shift"},
                       BadFile{", 0, 1]", "]", "has 14 numbers; must be a 4 x 4 matrix"},
                       BadFile{"\"fx\": 7, ", "", "fx"},
-                      BadFile{"\"fx\": 7", "\"fx\": 1e300", "is 1e+300; must be"},
+                      BadFile{"\"fx\": 7", "\"fx\": 1e300", "holds 1e+300, expected"},
                       BadFile{"[1, 0, 0, 0,", "[1, 0, 0, 1e300,", "is farther than 1000 m"},
                       BadFile{"\"cx\"", "\"c_x\"", "c_x"}));
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
+import shutil
 import warnings
 
 import numpy as np
@@ -155,3 +156,22 @@ def test_random_cells_are_the_same_in_vectors():
         assert np.array_equal(seen['particles'][place], alone['particles'])
         episodes.append(info['episode'])
     assert episodes[0] != episodes[1]
+
+
+def test_tells_warnings_of_the_task(tmp_path):
+    packaged, task = task_folder('rope_routing'), tmp_path / 'task'
+    shutil.copytree(packaged, task)
+    for shared in packaged.parent.glob('*.xml'):
+        shutil.copy(shared, tmp_path)
+    columns = ('x', 'y', 'z', 'f_dc_0', 'f_dc_1', 'f_dc_2', 'opacity', 'scale_0', 'scale_1', 'scale_2',
+               'rot_0', 'rot_1', 'rot_2', 'rot_3')
+    header = ['ply', 'format binary_little_endian 1.0', 'element vertex 1',
+              *(f'property float {name}' for name in columns), 'end_header', '']
+    far = np.array([9, 9, 9, 0, 0, 0, 0, -5, -5, -5, 1, 0, 0, 0], '<f4')
+    (task / 'far.ply').write_bytes('\n'.join(header).encode() + far.tobytes())
+    words = json.loads((task / 'task.json').read_text())
+    (task / 'task.json').write_text(json.dumps({**words, 'splats': {'file': 'far.ply'}}))
+    with pytest.warns(physpring.PhyspringWarning, match='far.ply'):
+        gymnasium.make('physpring/RopeRouting-v0', task=task, level=3)
+    with pytest.warns(physpring.PhyspringWarning, match='far.ply'):
+        physpring.sweep(task, 'random', levels=[3], workers=1)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
+import struct
+import zlib
 
 import numpy as np
 import physpring
@@ -35,6 +37,81 @@ def test_is_the_programs(twin, recording, other_recording, tmp_path):
     assert '<pre>' in evaluation._repr_html_()
     evaluation.save_page(tmp_path / 'page.html')
     assert '<html' in (tmp_path / 'page.html').read_text()
+
+
+def png(values):
+    """A PNG file of (height, width, 3) colours, or (height, width) whole numbers, 8 or 16 bits."""
+    def chunk(kind, data):
+        return (struct.pack('>I', len(data)) + kind + data +
+                struct.pack('>I', zlib.crc32(kind + data)))
+    height, width = values.shape[:2]
+    bits, colour = 8 * values.dtype.itemsize, 2 if values.ndim == 3 else 0
+    rows = values.astype(values.dtype.newbyteorder('>')).reshape(height, -1)
+    return (b'\x89PNG\r\n\x1a\n' +
+            chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, bits, colour, 0, 0, 0)) +
+            chunk(b'IDAT', zlib.compress(b''.join(b'\0' + row.tobytes() for row in rows))) +
+            chunk(b'IEND', b''))
+
+
+def picture_folder(folder, recording, size=96):
+    """What a camera before the points sees of them: white squares."""
+    centre = recording.points.mean(axis=(0, 1)) - [0, 1, 0]
+    axes = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # along y
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = axes.T, centre
+    for kind in ('color', 'mask', 'depth'):
+        (folder / kind / 'front').mkdir(parents=True)
+    for frame, points in enumerate(recording.points):
+        seen = (points - centre) @ axes.T
+        pixels = (size * seen[:, :2] / seen[:, 2:] + size / 2).astype(int)
+        mask, depth = np.zeros((size, size), np.uint8), np.zeros((size, size), np.uint16)
+        for (x, y), z in zip(pixels, seen[:, 2]):
+            mask[y - 1:y + 2, x - 1:x + 2] = 255
+            depth[y - 1:y + 2, x - 1:x + 2] = round(1e4 * z)
+        for kind, values in (('color', np.repeat(mask[..., None], 3, 2)), ('mask', mask),
+                             ('depth', depth)):
+            (folder / kind / 'front' / f'{frame:05}.png').write_bytes(png(values))
+    camera = {'name': 'front', 'width': size, 'height': size, 'fx': size, 'fy': size,
+              'cx': size / 2, 'cy': size / 2, 'pose': pose.ravel().tolist()}
+    (folder / 'cameras.json').write_text(json.dumps(
+        {'format': 'physpring pictures', 'version': 1, 'fps': recording.fps,
+         'frames': len(recording.points), 'depth_unit': 1e-4, 'cameras': [camera]}))
+
+
+def test_judges_pictures_and_other_predictions_as_the_program(twin, recording, tmp_path):
+    pictures, splats = tmp_path / 'pictures', tmp_path / 'chain.ply'
+    picture_folder(pictures, recording)
+    run_program('fit-splats', pictures, '-o', splats, '--count', 50, '--iterations', 20)
+    recording.save(tmp_path / 'chain.npz')
+    twin.copy().save(tmp_path / 'chain.twin.npz')
+    still = np.repeat(physpring.predict(twin, recording)[:1], len(recording.points), axis=0)
+    np.savez(tmp_path / 'still.npz', particles=still)
+    run_program('eval', tmp_path / 'chain.twin.npz', tmp_path / 'chain.npz', '--images', pictures,
+                '--splats', splats, '--prediction', f"still={tmp_path / 'still.npz'}", '--json',
+                tmp_path / 'errors.json')
+    ours = physpring.evaluate(tmp_path / 'chain.twin.npz', tmp_path / 'chain.npz', images=pictures,
+                              splats=splats, cameras=['front'], predictions={'still': still}).to_dict()
+    theirs = json.loads((tmp_path / 'errors.json').read_text())
+    assert without_speed(ours) == without_speed(theirs)
+    errors = ours['recordings'][0]
+    assert errors['images']['levels'][0]['prediction']['iou'] > errors['images']['still']['prediction']['iou']
+    assert errors['still']['prediction']['track'] == pytest.approx(
+        errors['motionless']['prediction']['track'], rel=0.1)
+
+
+def test_says_what_is_wrong_with_pictures_and_predictions(twin, recording, other_recording):
+    def message(**arguments):
+        with pytest.raises(physpring.Error) as error:
+            physpring.evaluate(twin, arguments.pop('recordings', recording), **arguments)
+        return str(error.value)
+    particles = physpring.predict(twin, recording)
+    assert message(images='pictures') == 'images and splats go together'
+    assert 'pictures/cameras.json' in message(images='pictures', splats='chain.ply')
+    assert 'has 39 frames, but the recording has 40' in message(predictions={'mine': particles[1:]})
+    assert 'expected (frames, ' in message(predictions={'mine': particles[:, 1:]})
+    assert "'rigid' cannot name a prediction" in message(predictions={'rigid': particles})
+    assert 'are of one recording; there are 2' in message(
+        recordings=[recording, other_recording], predictions={'mine': particles})
 
 
 def test_errors_are_distances(twin, other_recording):

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "rollout/scene.h"
+#include "tests/support/drawing.h"
 #include "tests/support/temporary_folder.h"
-#include "twin/error.h"
 
 namespace physpring {
 namespace {
@@ -31,11 +31,7 @@ const char* const kScene = R"(
 class PainterTest : public testing::Test {
  protected:
   void SetUp() override {
-    try {
-      OffScreen probe(kWidth, kHeight);
-    } catch (const Error& error) {
-      GTEST_SKIP() << error.what();
-    }
+    if (const std::string why = WhyNoDrawing(); !why.empty()) GTEST_SKIP() << why;
     std::ofstream(folder_.File("scene.xml")) << kScene;
   }
 

@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include "rollout/off_screen.h"
 #include "tests/rollout/record_scene.h"
+#include "tests/support/drawing.h"
 
 namespace physpring {
 namespace {
@@ -28,11 +28,7 @@ constexpr char kCameras[] = R"(
 class RecordPictures : public SceneTest {
  protected:
   void SetUp() override {
-    try {
-      OffScreen probe(kWidth, kHeight);
-    } catch (const Error& error) {
-      GTEST_SKIP() << error.what();
-    }
+    if (const std::string why = WhyNoDrawing(); !why.empty()) GTEST_SKIP() << why;
   }
 
   Recording Record(const std::vector<std::string>& cameras) const {

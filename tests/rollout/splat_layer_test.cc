@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "rollout/gl_camera.h"
-#include "rollout/off_screen.h"
 #include "rollout/painter.h"
 #include "rollout/plugin_library.h"
 #include "rollout/simulation.h"
 #include "splats/splat_file.h"
+#include "tests/support/drawing.h"
 #include "tests/support/small_task.h"
 #include "twin/error.h"
 
@@ -17,15 +17,6 @@ namespace physpring {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
-
-bool CanDraw() {
-  try {
-    const OffScreen off_screen(16, 16);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 class SplatLayerTest : public ::testing::Test {
  protected:
@@ -39,7 +30,7 @@ class SplatLayerTest : public ::testing::Test {
   }
 
   void SetUp() override {
-    if (!CanDraw()) GTEST_SKIP() << "no OSMesa";
+    if (const std::string why = WhyNoDrawing(); !why.empty()) GTEST_SKIP() << why;
     std::vector<std::string> warnings;
     model_ = MakeTaskModel(read_, 0, &warnings);
     simulation_.emplace(model_);
