@@ -7,9 +7,9 @@ branches at 100 Hz, dataset/BDLO1 to BDLO6, also BDLO1_mid_clamp and BDLO3_mid_c
 eval/*.pkl, each x, y, z of 500 frames, markers within frames, in metres with y up. The files do not
 say where branches begin: `CABLES` has it from scripts/DEFT_train.py. Held markers are `controllers`,
 the others `points`; particles between neighbours along a branch, on a smooth line, are `interior`.
-Frame 0 is the second of the file, the first gives the initial velocity. train/ is to be fitted, eval/
-is held out; files of one take have one number. Needs Python 3.9 and numpy; runs no code that a pickle
-names."""
+`rest` is flat, with straight branches of the mean lengths and angles of the files to fit. Frame 0 is
+the second of the file, the first gives the initial velocity. train/ is to be fitted, eval/ is held
+out; files of one take have one number. Needs Python 3.9 and numpy; runs no code that a pickle names."""
 
 import re
 import sys
@@ -24,28 +24,46 @@ from cable_files import (FPS, find_files, parameters_between, parser_of, spline,
 from safe_pickle import Error, read_pickle
 
 FRAMES = 500  # a file
+LOOKS = 4  # frames of a file, for lengths and angles
 ENDS = (0, 1, -2, -1)  # held markers of the main branch
-# markers of the main branch; of each other one the marker that it begins at, and how many more it has
+# markers of the main branch; of each other one the marker that it begins at, how many more it has, and
+# on which side it is when the cable lies flat
 CABLES = {
-    "BDLO1": (13, ((4, 4), (8, 3)), ENDS),
-    "BDLO1_mid_clamp": (13, ((4, 4), (8, 3)), (2, -2, -1)),
-    "BDLO2": (12, ((4, 4), (7, 4)), ENDS),
-    "BDLO3": (12, ((4, 2), (7, 3)), ENDS),
-    "BDLO3_mid_clamp": (12, ((4, 2), (7, 3)), (3, -2, -1)),
-    "BDLO4": (12, ((4, 2), (8, 2)), ENDS),
-    "BDLO5": (12, ((5, 3), (12, 3)), ENDS),  # the second branch begins on the first one
-    "BDLO6": (12, ((2, 4), (7, 2), (7, 3)), ENDS),
+    "BDLO1": (13, ((4, 4, 1), (8, 3, 1)), ENDS),
+    "BDLO1_mid_clamp": (13, ((4, 4, 1), (8, 3, 1)), (2, -2, -1)),
+    "BDLO2": (12, ((4, 4, 1), (7, 4, 1)), ENDS),
+    "BDLO3": (12, ((4, 2, 1), (7, 3, 1)), ENDS),
+    "BDLO3_mid_clamp": (12, ((4, 2, 1), (7, 3, 1)), (3, -2, -1)),
+    "BDLO4": (12, ((4, 2, 1), (8, 2, 1)), ENDS),
+    "BDLO5": (12, ((5, 3, 1), (12, 3, 1)), ENDS),  # the second branch begins on the first one
+    "BDLO6": (12, ((2, 4, 1), (7, 2, -1), (7, 3, 1)), ENDS),
 }
 
 
-def branches_of(cable):
-    """Numbers of the markers along each branch, with the one that it begins at."""
-    main, others, _ = CABLES[cable]
-    branches, count = [list(range(main))], main
-    for start, more in others:
-        branches.append([start, *range(count, count + more)])
-        count += more
-    return branches, count
+class Cable:
+    """Its topology. branches: numbers of the markers along each, with the one that it begins at."""
+
+    def __init__(self, name):
+        main, others, held = CABLES[name]
+        self.branches, self.count, self.sides = [list(range(main))], main, [0]
+        for start, more, side in others:
+            self.branches.append([start, *range(self.count, self.count + more)])
+            self.sides.append(side)
+            self.count += more
+        self.held = [i % main for i in held]
+        self.free = [i for i in range(self.count) if i not in self.held]
+
+    def gaps(self, branch):
+        """Those that have particles between: not those of which both ends are held."""
+        return [i for i, ends in enumerate(zip(branch, branch[1:])) if not set(ends) <= set(self.held)]
+
+    def base(self, number):
+        """The branch that another one begins on, and where on it."""
+        start = self.branches[number][0]
+        for base, branch in enumerate(self.branches[:number]):
+            if start in branch[1:]:
+                return base, branch.index(start)
+        raise AssertionError("a branch begins on another one")
 
 
 def read_markers(path, count):
@@ -65,19 +83,44 @@ def read_markers(path, count):
     return np.stack([-z, -x, y], axis=-1)
 
 
-def recording_of(frames, branches, held, between, mass):
-    free = [i for i in range(frames.shape[1]) if i not in held]
+def unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def rest_of(cable, frames, between):
+    """Stress-free positions of points, interior and controllers: flat, with straight branches, as long
+    and at such angles as on average in `frames` (n, markers, 3)."""
+    at, headings, interior = np.zeros((cable.count, 3)), [0.0], []
+    for number, branch in enumerate(cable.branches):
+        if number > 0:
+            base, i = cable.base(number)
+            along = cable.branches[base]
+            tangent = unit(frames[:, along[i + 1]] - frames[:, along[i - 1]])
+            first = unit(frames[:, branch[1]] - frames[:, branch[0]])
+            angle = np.arccos(np.clip((tangent * first).sum(1).mean(), -1, 1))
+            headings.append(headings[base] + cable.sides[number] * angle)
+        lengths = np.mean([parameters_between(frame[branch], 0, [])[1] for frame in frames], axis=0)
+        way = np.array([np.cos(headings[-1]), np.sin(headings[-1]), 0])
+        at[branch] = at[branch[0]] + lengths[:, None] * way
+        part = np.arange(1, between + 1) / (between + 1)
+        for i in cable.gaps(branch):
+            one, other = at[branch[i]], at[branch[i + 1]]
+            interior.append(one + part[:, None] * (other - one))
+    return np.concatenate([at[cable.free], *interior, at[cable.held]])
+
+
+def recording_of(cable, frames, rest, between, mass):
     starts, befores = [], []
-    for branch in branches:
-        gaps = [i for i, ends in enumerate(zip(branch, branch[1:])) if not set(ends) <= set(held)]
-        parameters, _, _ = parameters_between(frames[1, branch], between, gaps)
+    for branch in cable.branches:
+        parameters, _, _ = parameters_between(frames[1, branch], between, cable.gaps(branch))
         befores.append(spline(frames[0, branch])(parameters))
         starts.append(spline(frames[1, branch])(parameters))
     interior = np.concatenate(starts)
-    before = np.concatenate([frames[0, free], *befores])
-    velocity = (np.concatenate([frames[1, free], interior]) - before) * FPS
-    return take_arrays({"points": frames[1:, free], "controllers": frames[1:, held],
-                        "interior": interior, "velocity": velocity}, len(frames) - 1, mass)
+    before = np.concatenate([frames[0, cable.free], *befores])
+    velocity = (np.concatenate([frames[1, cable.free], interior]) - before) * FPS
+    return take_arrays({"points": frames[1:, cable.free], "controllers": frames[1:, cable.held],
+                        "interior": interior, "velocity": velocity, "rest": rest},
+                       len(frames) - 1, mass)
 
 
 def place_of(path):
@@ -87,24 +130,26 @@ def place_of(path):
 
 
 def convert(args):
-    cable = args.cable.resolve().name
-    if cable not in CABLES:
+    name = args.cable.resolve().name
+    if name not in CABLES:
         raise Error(f"{args.cable}: is none of {', '.join(CABLES)}")
-    branches, count = branches_of(cable)
-    held = [i % len(branches[0]) for i in CABLES[cable][2]]
+    cable = Cable(name)
     found = sorted(find_files(args.cable), key=lambda one: place_of(one[0]))
     takes = sorted({place_of(path)[0] for path, _ in found})
     names = [f"{path.stem}.npz" for path, _ in found]
     if len(set(names)) < len(names):
         raise Error(f"{args.cable}: two files of train/ and eval/ have one name")
-    recordings = {name: recording_of(read_markers(path, count), branches, held, args.between, args.mass)
-                  for name, (path, _) in zip(names, found)}
-    listed = [{"file": name, "role": role, "continuous_recording": takes.index(place_of(path)[0])}
-              for name, (path, role) in zip(names, found)]
-    write_dataset(args.output, recordings, {"name": f"branched cable {cable}", "recordings": listed})
+    markers = [read_markers(path, cable.count) for path, _ in found]
+    to_fit = [frames for frames, (_, role) in zip(markers, found) if role == "fit"] or markers
+    rest = rest_of(cable, np.concatenate([frames[::FRAMES // LOOKS] for frames in to_fit]), args.between)
+    recordings = {file: recording_of(cable, frames, rest, args.between, args.mass)
+                  for file, frames in zip(names, markers)}
+    listed = [{"file": file, "role": role, "continuous_recording": takes.index(place_of(path)[0])}
+              for file, (path, role) in zip(names, found)]
+    write_dataset(args.output, recordings, {"name": f"branched cable {name}", "recordings": listed})
     heldout = sum(role == "heldout" for _, role in found)
-    print(f"{args.output}: {len(found)} recordings of {count} markers on {len(branches)} branches, "
-          f"{heldout} of them held out")
+    print(f"{args.output}: {len(found)} recordings of {cable.count} markers on {len(cable.branches)} "
+          f"branches, {heldout} of them held out")
 
 
 def main(argv=None):

@@ -22,11 +22,11 @@ GAP = 0.07  # m
 
 
 def markers(t):
-    """BDLO4: a straight branch of 12 along x that rises, one of 2 from marker 4 and one of 2 from
-    marker 8, up and down; (16, 3), z up."""
+    """BDLO4: a straight branch of 12 along x that rises, one of 2 upwards from marker 4 and one from
+    marker 8; (16, 3), z up."""
     main = [[i * GAP, 0, 0] for i in range(12)]
-    up, down = ([[i * GAP, 0, side * GAP * n] for n in (1, 2)] for i, side in ((4, 1), (8, -1)))
-    return np.array(main + up + down) + [0, 0, 0.2 * t]
+    up, other = ([[i * GAP, 0, GAP * n] for n in (1, 2)] for i in (4, 8))
+    return np.array(main + up + other) + [0, 0, 0.2 * t]
 
 
 def file_of(frames):
@@ -65,14 +65,18 @@ class DeftTest(unittest.TestCase):
         # 9 gaps of the main branch that are not held, 2 of each other one
         self.assertEqual(len(file["interior"]), 3 * (9 + 2 + 2))
         np.testing.assert_allclose(file["velocity"], np.tile([0, 0, 0.2], (12 + 39, 1)), atol=1e-4)
+        # nothing deforms here, so the shape is that of all frames, moved
+        together = np.concatenate([file["points"][0], file["interior"], file["controllers"][0]])
+        shift = together - file["rest"][:, [0, 2, 1]]
+        np.testing.assert_allclose(shift, np.tile(shift[0], (len(shift), 1)), atol=1e-5)
         self.assertEqual((float(file["fps"]), float(file["mass"])), (100, 0.1))
 
     def test_particles_are_along_the_branches(self):
         self.run_tool("--between", "1")
         interior = np.load(self.output / "hand_block1_frames100to599.npz")["interior"] - [0, 0, 0.002]
         main = [[(i + 0.5) * GAP, 0, 0] for i in range(1, 10)]
-        up, down = ([[i * GAP, 0, side * GAP * n] for n in (0.5, 1.5)] for i, side in ((4, 1), (8, -1)))
-        np.testing.assert_allclose(interior, main + up + down, atol=1e-5)
+        up, other = ([[i * GAP, 0, GAP * n] for n in (0.5, 1.5)] for i in (4, 8))
+        np.testing.assert_allclose(interior, main + up + other, atol=1e-5)
 
     def test_the_data_set_has_roles_and_takes(self):
         self.run_tool()
