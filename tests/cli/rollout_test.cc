@@ -129,7 +129,7 @@ TEST_F(RolloutTest, LosesNoFinishedEpisodeHoweverOftenItIsKilled) {
 TEST_F(RolloutTest, WhatIsOfAVideoNeedsOne) {
   for (const std::string option : {"--cameras", "--films"}) {
     const ProgramResult result = Run({"--policy", "random", option, "2"});
-    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.status, 2);
     EXPECT_THAT(result.errors, HasSubstr(option + " requires --video"));
   }
 }
