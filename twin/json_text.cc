@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "twin/error.h"
@@ -32,8 +34,9 @@ class JsonCounter : public nlohmann::json_sax<Json> {
   bool start_array(std::size_t) override { return Open(); }
   bool end_array() override { return Close(); }
 
-  bool key(string_t&) override {
-    if (++keys_.back() <= JsonLimits::kKeys) return true;
+  bool key(string_t& name) override {
+    if (!keys_.back().insert(name).second) Fail(fmt::format("has key {} twice", Quote(name)));
+    if (static_cast<int>(keys_.back().size()) <= JsonLimits::kKeys) return true;
     Fail(fmt::format("has an object of more than {} keys", JsonLimits::kKeys));
   }
 
@@ -50,7 +53,7 @@ class JsonCounter : public nlohmann::json_sax<Json> {
     Fail(fmt::format("has more than {} values", JsonLimits::kValues));
   }
   bool Open() {
-    keys_.push_back(0);
+    keys_.emplace_back();
     if (keys_.size() <= JsonLimits::kDepth) return CountValue();
     Fail(fmt::format("is nested more than {} deep", JsonLimits::kDepth));
   }
@@ -60,7 +63,7 @@ class JsonCounter : public nlohmann::json_sax<Json> {
   }
 
   const std::string& where_;
-  std::vector<int> keys_;  // of each object and list that is open
+  std::vector<std::unordered_set<std::string>> keys_;  // of each object and list that is open
   int values_ = 0;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one way by which JSON text becomes values. Files may be hostile: what is too long, too deep
 // or too much is refused while it is read, before it fills the memory, or the stack of whoever
-// walks through it. Messages are one line and quote little.
+// walks through it. So is a key that an object has twice: one of both would be lost. Messages are
+// one line and quote little.
 #ifndef PHYSPRING_TWIN_JSON_TEXT_H_
 #define PHYSPRING_TWIN_JSON_TEXT_H_
 

@@ -41,6 +41,11 @@ TEST(JsonText, NamesTheByteThatIsWrong) {
   EXPECT_EQ(ErrorOfText("[1e999]"), "file: has a number that is too large");
 }
 
+TEST(JsonText, AKeyIsInAnObjectOnce) {
+  EXPECT_EQ(ErrorOfText(R"([{"a": 1, "b": {"a": 2}, "a": 3}])"), "file: has key 'a' twice");
+  EXPECT_NO_THROW(ParseJson(R"({"a": [{"b": 1}, {"b": 2}], "c": {"a": 3}})", "file"));
+}
+
 TEST(JsonText, DepthIsLimited) {
   EXPECT_NO_THROW(ParseJson(Nested(JsonLimits::kDepth), "file"));
   EXPECT_EQ(ErrorOfText(Nested(JsonLimits::kDepth + 1)), "file: is nested more than 32 deep");
