@@ -69,6 +69,18 @@ void PrintCheck(const SplatsArguments& arguments, const Splats& splats, const Po
   PrintWarnings(WarningsOf(check, arguments.splats));
 }
 
+// Files of an earlier run, which a viewer would take for frames of this one.
+void WarnOfOthers(const std::string& folder, std::size_t written) {
+  std::size_t frames = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    frames += name.starts_with("frame_") && name.ends_with(".ply") ? 1 : 0;
+  }
+  if (frames <= written) return;
+  PrintWarnings({fmt::format("{}: has {} files frame_*.ply of an earlier run, too", folder,
+                             frames - written)});
+}
+
 void WriteFrames(const SplatsArguments& arguments, const Splats& splats,
                  const std::vector<Points>& nodes) {
   const auto path = [&](std::size_t frame) {
@@ -99,6 +111,7 @@ void WriteFrames(const SplatsArguments& arguments, const Splats& splats,
                   fmt::format("frame {} of {}", i + 1, frames.size()));
   }
   fmt::print("{} files, {} to {}\n", frames.size(), path(frames.front()), path(frames.back()));
+  WarnOfOthers(arguments.folder, frames.size());
 }
 
 void Run(const SplatsArguments& arguments) {

@@ -82,6 +82,12 @@ TEST_F(SplatsCommand, FilesThatAreThereStay) {
   const ProgramResult again = Run(words);
   EXPECT_EQ(again.status, 1);
   EXPECT_NE(again.errors.find("frame_00000.ply"), std::string::npos) << again.errors;
+  // frames 0 and 5 of 6
+  const ProgramResult fewer =
+      Run({"--recording", File("swing.npz"), "-o", File("moved"), "--every", "5", "--force"});
+  ASSERT_EQ(fewer.status, 0) << fewer.errors;
+  EXPECT_NE(fewer.errors.find("has 4 files frame_*.ply of an earlier run"), std::string::npos)
+      << fewer.errors;
 }
 
 TEST_F(SplatsCommand, OtherFilesAreOneLine) {
