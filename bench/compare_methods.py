@@ -44,9 +44,14 @@ class Once:
     def path(self, name):
         return self.folder / name
 
+    def seconds(self):
+        """Of each file that is done."""
+        path = self.path("seconds.json")
+        return json.loads(path.read_text()) if path.exists() else {}
+
     def run(self, name, *arguments):
         """`physpring ARGUMENTS`, after which OUTPUT/OBJECT/`name` is there; its seconds are kept."""
-        if self.path(name).exists():
+        if name in self.seconds():
             return
         begin = time.monotonic()
         print(f"{self.folder.name}: {name}", flush=True)
@@ -59,9 +64,8 @@ class Once:
         self.keep_seconds(name, time.monotonic() - begin)
 
     def keep_seconds(self, name, seconds):
-        path = self.path("seconds.json")
-        kept = json.loads(path.read_text()) if path.exists() else {}
-        path.write_text(json.dumps(kept | {name: round(seconds, 1)}, indent=1) + "\n")
+        done = self.seconds() | {name: round(seconds, 1)}
+        self.path("seconds.json").write_text(json.dumps(done, indent=1) + "\n")
 
 
 def textured(object_name, box):
@@ -105,12 +109,13 @@ def numbers(values):
 def record(once, object_name):
     """The recording with pictures, other motions, and the object's splats."""
     noise = ("--noise", "0.001", "--occlusion", "0.1")
-    once.run("box.npz", "record", ROOT / f"models/demo/{object_name}.xml", "-o", once.path("box.npz"))
+    once.run("box.npz", "record", ROOT / f"models/demo/{object_name}.xml", "-o", once.path("box.npz"),
+             "--force")
     points = np.load(once.path("box.npz"))["points"]
     scene = once.path("scene.xml")
     box = np.stack([points.min((0, 1)), points.max((0, 1))])
     scene.write_text(textured(object_name, box))
-    if not once.path("object.npz").exists():
+    if "object.npz" not in once.seconds():
         shutil.rmtree(once.path("pictures"), ignore_errors=True)
     once.run("object.npz", "record", scene, "-o", once.path("object.npz"), *noise, "--seed", 11,
              "--pictures", once.path("pictures"), "--cameras", ",".join(CAMERAS),
@@ -118,12 +123,12 @@ def record(once, object_name):
     for number in range(OTHERS):
         name = f"other_{number}.npz"
         once.run(name, "record", scene, "-o", once.path(name), *noise, "--vary", "0.03",
-                 "--seed", 100 + number)
-    once.run("object.ply", "fit-splats", once.path("pictures"), "-o", once.path("object.ply"))
+                 "--seed", 100 + number, "--force")
+    once.run("object.ply", "fit-splats", once.path("pictures"), "-o", once.path("object.ply"), "--force")
 
 
 def train(once):
-    common = (once.path("object.npz"), "--precision", "float", "--seed", 1)
+    common = (once.path("object.npz"), "--precision", "float", "--seed", 1, "--resume")
     once.run("ours.twin.npz", "train", *common, "-o", once.path("ours.twin.npz"), "--levels", 4)
     once.run("two_stage.twin.npz", "train", *common, "-o", once.path("two_stage.twin.npz"),
              "--levels", 1, "--method", "two-stage")

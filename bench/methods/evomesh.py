@@ -129,7 +129,7 @@ class EvoMesh(torch.nn.Module):
         return found[:, (found >= 0).all(0)]
 
 
-def predict(recorded, say, others=(), seconds=240):
+def predict(recorded, say, others=(), seconds=300):
     torch.manual_seed(0)
     size = float((recorded.start.max(0).values - recorded.start.min(0).values).norm())
     spacing = size / 30

@@ -62,7 +62,7 @@ class GsDynamics(torch.nn.Module):
         return window[:, -1] + motion
 
 
-def predict(recorded, say, others=(), seconds=240):
+def predict(recorded, say, others=(), seconds=300):
     torch.manual_seed(0)
     size = float((recorded.start.max(0).values - recorded.start.min(0).values).norm())
     spacing = size / 20  # 0.03 m of their rope of about 0.6 m

@@ -4,6 +4,9 @@
 import numpy as np
 import torch
 
+# more are hardly faster on bodies of this size, and far slower where something else runs
+torch.set_num_threads(1)
+
 
 class Recorded:
     """A recording as tensors. N points, M interior particles, C controllers, T frames."""

@@ -21,7 +21,7 @@ NEIGHBOURS, FIXED, POWER = 256, 16, 0.5
 STARTS = (0.3, 1.0, 3.0, 10.0, 30.0)  # stiffness k, in N for 1 g an anchor
 DAMPING_TIME = 1e-4  # s: dashpot constant by stiffness, as theirs
 SUBSTEPS = 100  # a frame
-EPOCHS, HORIZON, RATES = 8, 7, (0.03, 0.1)
+EPOCHS, HORIZON, RATES = 5, 7, (0.03, 0.1)
 
 
 @torch.compile(dynamic=False)
