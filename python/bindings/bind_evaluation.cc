@@ -54,7 +54,9 @@ Evaluation EvaluateAll(const GivenTwin& twin, const GivenRecordings& recordings,
     throw Error(fmt::format("predictions and images are of one recording; there are {}",
                             recordings.size()));
   }
-  options.others = BaselinesOf(predictions, RecordingFor(twin.twin, *recordings[0]));
+  if (!predictions.empty()) {
+    options.others = BaselinesOf(predictions, RecordingFor(twin.twin, *recordings[0]));
+  }
   Evaluation evaluation{twin.path, twin.twin, options.predict.single_precision, options.anchor, {}};
   const int count = static_cast<int>(recordings.size());
   evaluation.recordings.resize(recordings.size());

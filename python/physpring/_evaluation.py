@@ -118,7 +118,7 @@ def evaluate(twin: _core.Twin | str | os.PathLike,
              predictions: Mapping[str, ArrayLike] | None = None,
              images: str | os.PathLike | None = None,
              splats: str | os.PathLike | None = None,
-             cameras: Sequence[str] = (),
+             cameras: str | Sequence[str] = (),
              threads: int | None = 1) -> Evaluation:
     """Predicts recordings of the twin's object with every level of it, as `physpring eval` does.
 
@@ -134,6 +134,10 @@ def evaluate(twin: _core.Twin | str | os.PathLike,
     _expect_counts(substeps=substeps, anchor=anchor)
     if (images is None) != (splats is None):
         raise _core.Error('images and splats go together')
+    if isinstance(cameras, str):
+        cameras = [cameras]
+    if cameras and images is None:
+        raise _core.Error('cameras are of images, which are missing')
     one, given = twin_of(twin), recordings_of(recordings, 'heldout')
     others = {name: np.ascontiguousarray(array, float) for name, array in (predictions or {}).items()}
     return Evaluation(

@@ -90,7 +90,7 @@ def test_judges_pictures_and_other_predictions_as_the_program(twin, recording, t
                 '--splats', splats, '--prediction', f"still={tmp_path / 'still.npz'}", '--json',
                 tmp_path / 'errors.json')
     ours = physpring.evaluate(tmp_path / 'chain.twin.npz', tmp_path / 'chain.npz', images=pictures,
-                              splats=splats, cameras=['front'], predictions={'still': still}).to_dict()
+                              splats=splats, cameras='front', predictions={'still': still}).to_dict()
     theirs = json.loads((tmp_path / 'errors.json').read_text())
     assert without_speed(ours) == without_speed(theirs)
     errors = ours['recordings'][0]
@@ -106,6 +106,7 @@ def test_says_what_is_wrong_with_pictures_and_predictions(twin, recording, other
         return str(error.value)
     particles = physpring.predict(twin, recording)
     assert message(images='pictures') == 'images and splats go together'
+    assert message(cameras=['front']) == 'cameras are of images, which are missing'
     assert 'pictures/cameras.json' in message(images='pictures', splats='chain.ply')
     assert 'has 39 frames, but the recording has 40' in message(predictions={'mine': particles[1:]})
     assert 'expected (frames, ' in message(predictions={'mine': particles[:, 1:]})
