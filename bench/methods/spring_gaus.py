@@ -18,7 +18,7 @@ import copy
 import torch
 
 NEIGHBOURS, FIXED, POWER = 256, 16, 0.5
-STARTS = (0.3, 1.0, 3.0, 10.0, 30.0)  # stiffness k, in N for 1 g an anchor
+STARTS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)  # stiffness k, in N for 1 g an anchor
 DAMPING_TIME = 1e-4  # s: dashpot constant by stiffness, as theirs
 SUBSTEPS = 100  # a frame
 LANES = 16  # numbers of neighbours are multiples of it: others are thirty times as slow
