@@ -57,22 +57,32 @@ def take_arrays(arrays, frames, mass):
     return arrays
 
 
-def find_files(cable):
-    """[(path, role)] of train/*.pkl and eval/*.pkl."""
-    found = [(path, role) for folder, role in (("train", "fit"), ("eval", "heldout"))
-             for path in (cable / folder).glob("*.pkl")]
+def find_files(args, place, name):
+    """[(path, role, file to write)] of train/*.pkl and eval/*.pkl, sorted by place(path); name(path) is
+    that of the file."""
+    found = [(path, role, name(path)) for folder, role in (("train", "fit"), ("eval", "heldout"))
+             for path in (args.cable / folder).glob("*.pkl")]
     if not found:
-        raise Error(f"{cable}: has no train/*.pkl and no eval/*.pkl")
-    return found
+        raise Error(f"{args.cable}: has no train/*.pkl and no eval/*.pkl")
+    if len({file for _, _, file in found}) < len(found):
+        raise Error(f"{args.cable}: two files of train/ and eval/ have one name")
+    if (args.output / "dataset.json").exists():
+        raise Error(f"{args.output}: has a dataset.json already; name another folder, or remove it")
+    return sorted(found, key=lambda one: place(one[0]))
 
 
-def write_dataset(output, recordings, dataset):
-    """The files {name: arrays} and dataset.json: all, or none."""
-    if (output / "dataset.json").exists():
-        raise Error(f"{output}: has a dataset.json already; name another folder, or remove it")
-    output.mkdir(parents=True, exist_ok=True)
-    write_files({output / name: npz_bytes(arrays) for name, arrays in recordings.items()})
-    write_files({output / "dataset.json": (json.dumps(dataset, indent=1) + "\n").encode()})
+def write_dataset(args, found, groups, recordings, dataset):
+    """The arrays `recordings` of the files `found`, and dataset.json. Files of one group are of one
+    recording. Returns a line that says how many there are."""
+    listed = [{"file": file, "role": role, "continuous_recording": group}
+              for (_, role, file), group in zip(found, groups)]
+    text = json.dumps({**dataset, "recordings": listed}, indent=1) + "\n"
+    files = {args.output / file: npz_bytes(arrays) for (_, _, file), arrays in zip(found, recordings)}
+    args.output.mkdir(parents=True, exist_ok=True)
+    write_files(files)
+    write_files({args.output / "dataset.json": text.encode()})
+    heldout = sum(role == "heldout" for _, role, _ in found)
+    return f"{args.output}: {len(found)} recordings, {heldout} of them held out"
 
 
 def parser_of(doc, what):

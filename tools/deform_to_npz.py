@@ -71,24 +71,16 @@ def continuous(files):
 
 
 def convert(args):
-    found = sorted(find_files(args.cable), key=lambda one: (number_in(one[0]), one[0].name))
-    markers = [read_markers(path) for path, _ in found]
+    found = find_files(args, lambda path: (number_in(path), path.name),
+                       lambda path: f"{path.stem.zfill(3)}.npz")
+    markers = [read_markers(path) for path, _, _ in found]
     counts = sorted({frames.shape[1] for frames in markers})
     if len(counts) > 1:
         raise Error(f"{args.cable}: files have {counts[0]} to {counts[-1]} markers; one cable has as "
                     "many in all")
-    names = [f"{path.stem.zfill(3)}.npz" for path, _ in found]
-    if len(set(names)) < len(names):
-        raise Error(f"{args.cable}: two files of train/ and eval/ have one name")
-    listed = [{"file": name, "role": role, "continuous_recording": group}
-              for name, (_, role), group in zip(names, found, continuous(markers))]
-    write_dataset(args.output,
-                  {name: recording_of(frames, args.between, args.mass)
-                   for name, frames in zip(names, markers)},
-                  {"name": f"cable {args.cable.resolve().name}", "published_l1_m": {},
-                   "recordings": listed})
-    heldout = sum(role == "heldout" for _, role in found)
-    print(f"{args.output}: {len(found)} recordings of {counts[0]} markers, {heldout} of them held out")
+    recordings = (recording_of(frames, args.between, args.mass) for frames in markers)
+    dataset = {"name": f"cable {args.cable.resolve().name}", "published_l1_m": {}}
+    print(f"{write_dataset(args, found, continuous(markers), recordings, dataset)}; {counts[0]} markers")
 
 
 def main(argv=None):

@@ -134,22 +134,16 @@ def convert(args):
     if name not in CABLES:
         raise Error(f"{args.cable}: is none of {', '.join(CABLES)}")
     cable = Cable(name)
-    found = sorted(find_files(args.cable), key=lambda one: place_of(one[0]))
-    takes = sorted({place_of(path)[0] for path, _ in found})
-    names = [f"{path.stem}.npz" for path, _ in found]
-    if len(set(names)) < len(names):
-        raise Error(f"{args.cable}: two files of train/ and eval/ have one name")
-    markers = [read_markers(path, cable.count) for path, _ in found]
-    to_fit = [frames for frames, (_, role) in zip(markers, found) if role == "fit"] or markers
+    found = find_files(args, place_of, lambda path: f"{path.stem}.npz")
+    of_file = [place_of(path)[0] for path, _, _ in found]
+    takes = sorted(set(of_file))
+    markers = [read_markers(path, cable.count) for path, _, _ in found]
+    to_fit = [frames for frames, (_, role, _) in zip(markers, found) if role == "fit"] or markers
     rest = rest_of(cable, np.concatenate([frames[::FRAMES // LOOKS] for frames in to_fit]), args.between)
-    recordings = {file: recording_of(cable, frames, rest, args.between, args.mass)
-                  for file, frames in zip(names, markers)}
-    listed = [{"file": file, "role": role, "continuous_recording": takes.index(place_of(path)[0])}
-              for file, (path, role) in zip(names, found)]
-    write_dataset(args.output, recordings, {"name": f"branched cable {name}", "recordings": listed})
-    heldout = sum(role == "heldout" for _, role in found)
-    print(f"{args.output}: {len(found)} recordings of {cable.count} markers on {len(cable.branches)} "
-          f"branches, {heldout} of them held out")
+    recordings = (recording_of(cable, frames, rest, args.between, args.mass) for frames in markers)
+    done = write_dataset(args, found, [takes.index(take) for take in of_file], recordings,
+                         {"name": f"branched cable {name}"})
+    print(f"{done}; {cable.count} markers on {len(cable.branches)} branches")
 
 
 def main(argv=None):

@@ -87,9 +87,10 @@ class SpringGaus(torch.nn.Module):
         held_v = (other - one) * self.recorded.fps
         network = (self.near, self.length)
         forces = (*self.springs(), self.recorded.gravity, self.mass)
+        ground = self.ground()
         for i in range(substeps):
             held = one + (other - one) * (i / substeps)
-            x, v = step(x, v, held, held_v, network, forces, self.ground(), h)
+            x, v = step(x, v, held, held_v, network, forces, ground, h)
         return x, v
 
     def ground(self):

@@ -3,20 +3,14 @@
 
 import json
 import os
-import pathlib
 import pickle
 import subprocess
-import sys
-import tempfile
 import unittest
 
-try:
-    import numpy as np
-except ImportError:
-    print("SKIPPED: NumPy is not installed")
-    sys.exit(77)
+from cable_case import CableCase
 
-TOOL = pathlib.Path(__file__).resolve().parents[2] / "tools" / "deform_to_npz.py"
+import numpy as np
+
 MARKERS, FRAMES = 7, 12
 
 
@@ -26,25 +20,19 @@ def quarter_circle(t):
     return np.stack([0.4 * np.cos(angle), 0.4 * np.sin(angle), np.full(MARKERS, 0.5 + 0.3 * t)])
 
 
-class DeformTest(unittest.TestCase):
+class DeformTest(CableCase):
+    TOOL, CABLE = "deform_to_npz.py", "DLO9"
+
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.cable, self.output = pathlib.Path(folder.name) / "DLO9", pathlib.Path(folder.name) / "out"
+        super().setUp()
         # 10 goes on where 9 ended, 11 is elsewhere
         self.write("train/9.pkl", range(0, FRAMES))
         self.write("eval/10.pkl", range(FRAMES, 2 * FRAMES))
         self.write("train/11.pkl", range(1000, 1000 + FRAMES))
 
     def write(self, name, times, change=lambda frames: frames):
-        path = self.cable / name
-        path.parent.mkdir(parents=True, exist_ok=True)
         frames = [quarter_circle(t / 100).tolist() for t in times]  # lists, as DEFORM's
-        path.write_bytes(pickle.dumps(change(frames)))
-
-    def run_tool(self, *flags):
-        return subprocess.run([sys.executable, TOOL, self.cable, "-o", self.output, *flags],
-                              capture_output=True, text=True)
+        super().write(name, change(frames))
 
     def test_markers_become_points_and_controllers(self):
         done = self.run_tool("--mass", "0.1")

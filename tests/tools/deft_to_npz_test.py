@@ -3,20 +3,13 @@
 
 import json
 import os
-import pathlib
-import pickle
 import subprocess
-import sys
-import tempfile
 import unittest
 
-try:
-    import numpy as np
-except ImportError:
-    print("SKIPPED: NumPy is not installed")
-    sys.exit(77)
+from cable_case import CableCase
 
-TOOL = pathlib.Path(__file__).resolve().parents[2] / "tools" / "deft_to_npz.py"
+import numpy as np
+
 FRAMES, MARKERS = 500, 16
 GAP = 0.07  # m
 
@@ -35,25 +28,15 @@ def file_of(frames):
     return [tuple(list(axis.ravel()) for axis in (-y, z, -x))]
 
 
-class DeftTest(unittest.TestCase):
+class DeftTest(CableCase):
+    TOOL, CABLE = "deft_to_npz.py", "BDLO4"
+
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
-        self.cable, self.output = self.root / "BDLO4", self.root / "out"
+        super().setUp()
         self.frames = np.stack([markers(t / 100) for t in range(FRAMES)])
         for name in ("train/hand_block1_frames100to599.pkl", "train/arm_block1_frames7to506.pkl",
                      "eval/hand_block2_frames700to1199.pkl"):
             self.write(name, file_of(self.frames))
-
-    def write(self, name, value):
-        path = self.cable / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(pickle.dumps(value))
-
-    def run_tool(self, *flags):
-        return subprocess.run([sys.executable, TOOL, self.cable, "-o", self.output, *flags],
-                              capture_output=True, text=True)
 
     def test_markers_become_points_and_controllers(self):
         done = self.run_tool("--mass", "0.1")
