@@ -43,6 +43,13 @@ ChosenBody ChosenBody::WithOtherVelocity() const {
   return other;
 }
 
+ChosenBody ChosenBody::WithOtherCone() const {
+  ChosenBody other = *this;
+  other.body.cone =
+      body.cone == FrictionCone::kElliptic ? FrictionCone::kPyramidal : FrictionCone::kElliptic;
+  return other;
+}
+
 LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
   const Recording recording = OnlyFitFrames(episodes.at(0));

@@ -20,6 +20,8 @@ struct ChosenBody {
   SpringMassSystem System(const Recording& recording) const;
   // The same with the other treatment of the controllers' velocity.
   ChosenBody WithOtherVelocity() const;
+  // The same with the other cone of friction.
+  ChosenBody WithOtherCone() const;
 };
 
 // One step of Levenberg-Marquardt on common factors, under an observer of this gain.

@@ -33,6 +33,7 @@ class SmoothBody {
 
   int size() const { return factors_.size(); }
   const Parameters& factors() const { return factors_; }
+  const Options& options() const { return options_; }
   double most_rate() const { return options_.most_rate; }
   bool hands_apart() const { return options_.hands_apart; }
   bool directions() const { return options_.directions; }

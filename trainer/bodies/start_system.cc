@@ -52,8 +52,8 @@ double LyingHeight(const Recording& recording) {
 }
 
 // Distance from the ground at which particles touch it: the lowest height in frame 0, if the body
-// lies there (lower than the particles' spacing), else the height at which it comes to lie later;
-// 0 where it does not.
+// lies there (lower than the particles' spacing), or the height at which it comes to lie later, if
+// that is lower; 0 where it does not lie.
 double ContactRadius(const Recording& recording) {
   if (!recording.ground) return 0;
   const Points nodes = recording.start.leftCols(recording.particle_count());
@@ -61,7 +61,8 @@ double ContactRadius(const Recording& recording) {
       (recording.ground->head<3>().transpose() * nodes).minCoeff() - (*recording.ground)[3];
   const std::vector<Neighbour> near = NeighbourSearch(nodes).Nearest(nodes.col(0), 2);
   const double spacing = near.size() > 1 ? near[1].distance : 0;
-  const double height = lowest < spacing ? lowest : LyingHeight(recording);
+  const double later = LyingHeight(recording);
+  const double height = later > 0 && (later < lowest || lowest < 0) ? later : lowest;
   return height > 0 && height < spacing ? height : 0;
 }
 

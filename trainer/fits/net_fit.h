@@ -16,7 +16,7 @@ namespace physpring {
 
 struct FittedNet {
   SpringMassSystem system;
-  Body body;  // the chosen one, but for the controllers' velocity
+  Body body;  // the chosen one, but for the cone and the controllers' velocity
 };
 
 // The system of the chosen body that fits the recordings. With --method smooth it is the smooth

@@ -44,6 +44,9 @@ constexpr std::array<Try, 4> kTries = {
 // The gains of the observer, one after the other, under which the first part of the motions shows a
 // smooth body the way, and under which it follows the rest.
 const std::vector<double> kGuidingGains = {0.5, 0.2, 0.1, 0}, kGainsOfTheRest = {0.2, 0.1};
+// The loss time that a body of more sub-steps than kSlowRate starts with, relative to others: from
+// a short one on, fits of bodies that lose much end in side valleys.
+constexpr double kLossier = 30;
 
 // A smooth body, and how much of its error is no noise.
 struct SmoothTrial {
@@ -91,10 +94,14 @@ class SmoothChoice {
 
  private:
   bool HasHands() const { return recording_.controller_count() > 0; }
+  SmoothlyFitted StartOf(const ChosenBody& model, const SmoothBody::Options& body) const {
+    return SoftSmoothBody(model, first_, body, body.most_rate > kSlowRate ? kLossier : 1);
+  }
   SmoothTrial Judge(const ChosenBody& model, const SmoothlyFitted& fit,
                     const std::vector<Episode>& episodes) const;
-  SmoothTrial TryRoughly(const ChosenBody& model, const SmoothlyFitted& start,
+  SmoothTrial TryRoughly(const ChosenBody& model, const SmoothBody::Options& body,
                          const Work& work) const;
+  SmoothTrial WithBetterCone(const SmoothTrial& trial, const Work& work) const;
   SmoothTrial WithBetterVelocity(const SmoothTrial& trial, const Work& work) const;
   SmoothTrial ToTheEnd(const SmoothTrial& trial, const Work& work) const;
   void Consider(const SmoothTrial& trial);
@@ -128,13 +135,21 @@ SmoothTrial SmoothChoice::Judge(const ChosenBody& model, const SmoothlyFitted& f
 
 // A body roughly fitted to the first part of the motions, which tells the side valleys apart that
 // fits end in; of few points to all.
-SmoothTrial SmoothChoice::TryRoughly(const ChosenBody& model, const SmoothlyFitted& start,
+SmoothTrial SmoothChoice::TryRoughly(const ChosenBody& model, const SmoothBody::Options& body,
                                      const Work& work) const {
-  SmoothlyFitted fit = FitRoughly(start, kGuidingGains, model, first_, options_, work);
+  SmoothlyFitted fit =
+      FitRoughly(StartOf(model, body), kGuidingGains, model, first_, options_, work);
   if (&judged_ != &first_) {
     fit = FitRoughly(fit, {0}, model, judged_, options_, work.Stretch("all", 1, 1));
   }
   return Judge(model, fit, judged_);
+}
+
+// The trial, or the same body with the other cone of friction where that leaves less. It starts
+// anew: a fit that slips the wrong way ends in a side valley.
+SmoothTrial SmoothChoice::WithBetterCone(const SmoothTrial& trial, const Work& work) const {
+  const SmoothTrial other = TryRoughly(trial.model.WithOtherCone(), trial.fit.body.options(), work);
+  return other.wrong_by < trial.wrong_by ? other : trial;
 }
 
 // The trial, or the same body with the other treatment of the controllers' velocity where that
@@ -185,25 +200,30 @@ void SmoothChoice::FitBest(const Work& work) {
 // question of the controllers' velocity was asked in vain, and both treatments are tried.
 void SmoothChoice::TryDirections(const Work& work) {
   const SmoothBody& body = best_->fit.body;
-  const SmoothlyFitted start =
-      SoftSmoothBody(model_, first_, {body.most_rate(), body.hands_apart(), true});
-  if (start.body.size() == body.size()) return;
+  const SmoothBody::Options apart = {body.most_rate(), body.hands_apart(), true};
+  if (StartOf(model_, apart).body.size() == body.size()) return;
   const bool lost = best_->correlation >= kLost;
-  Consider(TryRoughly(model_, start, work.Stretch("as found", 0, 0.5)));
+  Consider(TryRoughly(model_, apart, work.Stretch("as found", 0, 0.5)));
   if (!lost || !HasHands() || options_.controller_velocity) return;
-  Consider(TryRoughly(model_.WithOtherVelocity(), start, work.Stretch("other velocity", 0.5, 1)));
+  Consider(TryRoughly(model_.WithOtherVelocity(), apart, work.Stretch("other velocity", 0.5, 1)));
 }
 
 // Bodies of long sub-steps come first, and of each those whose hands follow the law of the object.
 SmoothlyChosen SmoothChoice::Run() {
   const double least = std::min(kSlowRate, most_rate_);
   bool velocity_is_open = HasHands() && !options_.controller_velocity;
+  bool cone_is_open = recording_.ground && !options_.cone;
   double from = 0;
   for (const Try& one : kTries) {
     const double rate = one.stiff ? most_rate_ : least;
     if ((one.stiff && most_rate_ == least) || (one.hands_apart && (few_ || !HasHands()))) continue;
-    SmoothTrial trial = TryRoughly(model_, SoftSmoothBody(model_, first_, {rate, one.hands_apart}),
-                                   work_.Part(one.name, from, one.roughly));
+    SmoothTrial trial =
+        TryRoughly(model_, {rate, one.hands_apart}, work_.Part(one.name, from, one.roughly));
+    if (cone_is_open && trial.correlation >= kSurelyNoise) {
+      trial = WithBetterCone(trial, work_.Stretch("cone", one.roughly, one.roughly));
+      model_ = trial.model;
+      cone_is_open = false;
+    }
     if (velocity_is_open && trial.correlation >= kSurelyNoise && !trial.limited) {
       trial = WithBetterVelocity(trial, work_.Stretch("velocity", one.roughly, one.roughly));
       model_ = trial.model;

@@ -15,15 +15,17 @@ namespace physpring {
 
 struct SmoothlyChosen {
   SmoothlyFitted fit;
-  ChosenBody model;    // as given, but for the controllers' velocity
+  ChosenBody model;    // as given, but for the cone and the controllers' velocity
   double correlation;  // of what the fit leaves (residual_correlation.h)
 };
 
 // The first smooth body that surely leaves no more than noise of the episodes, or else the best
-// one. Where the options leave open whether dashpots feel the controllers' velocity, the first body
-// that leaves more than noise in the first part, and wants no more sub-steps, is fitted with the
-// other treatment too, and the better one goes on; a lost body asks again, with directions apart.
-// With `few`, for many particles, bodies do not tell hands or directions apart.
+// one. Where the options leave open which cone friction has, the first body that leaves more than
+// noise in the first part is fitted anew with the other one. Where they leave open whether dashpots
+// feel the controllers' velocity, the first body that leaves more than noise there, and wants no
+// more sub-steps, is fitted with the other treatment, too; a lost body asks again, with directions
+// apart. The better one of both goes on. With `few`, for many particles, bodies do not tell hands
+// or directions apart.
 SmoothlyChosen ChooseSmoothBody(const ChosenBody& model, const std::vector<Episode>& episodes,
                                 const TrainOptions& options, bool few, const Work& work);
 

@@ -134,9 +134,11 @@ SmoothlyFitted Fit(const SmoothlyFitted& start, const Course& course, const Chos
 }  // namespace
 
 SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                              const SmoothBody::Options& body) {
+                              const SmoothBody::Options& body, double lossier) {
   const Recording recording = OnlyFitFrames(episodes.at(0));
-  const SmoothBody smooth(StartOf(chosen, recording), recording, *chosen.body.kind, body);
+  SpringMassSystem start = StartOf(chosen, recording);
+  start.dashpot *= lossier;
+  const SmoothBody smooth(start, recording, *chosen.body.kind, body);
   return {smooth, Eigen::VectorXd::Zero(smooth.size())};
 }
 

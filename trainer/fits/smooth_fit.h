@@ -22,9 +22,9 @@ struct SmoothlyFitted {
 };
 
 // The body that fits start from: its contact with the ground as chosen, all else as soft as the
-// choice began.
+// choice began, and its loss time `lossier` times as long.
 SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
-                              const SmoothBody::Options& body);
+                              const SmoothBody::Options& body, double lossier = 1);
 
 // Numbers that about fit the episodes, found under an observer of these gains, one after the other.
 SmoothlyFitted FitRoughly(const SmoothlyFitted& start, const std::vector<double>& gains,

@@ -84,6 +84,20 @@ TEST(StartSystem, BodyThatFallsTouchesTheGroundWhereItComesToLie) {
   EXPECT_EQ(MakeStartSystem(recording, {}).contact_radius[0], 0);
 }
 
+// In frame 0 it is no higher than its particles are apart, but does not lie yet.
+TEST(StartSystem, BodyThatFallsALittleTouchesTheGroundWhereItComesToLie) {
+  constexpr int kFrames = 40;
+  for (const double start : {0.008, -0.001}) {
+    Recording recording = AboveGround(start);
+    recording.points.assign(kFrames, recording.start.leftCols(recording.point_count()));
+    for (int frame = 2; frame < kFrames; ++frame) {
+      recording.points[frame].row(2).setConstant((*recording.ground)[3] + 0.004);
+    }
+    recording.train_frames = kFrames;
+    EXPECT_NEAR(MakeStartSystem(recording, {}).contact_radius[0], 0.004, 1e-12) << start;
+  }
+}
+
 TEST(StartSystem, SaysThatThereIsNoBody) {
   Recording recording = SwungRope(8, 2);
   recording.rest.col(1) = recording.rest.col(0);
