@@ -53,7 +53,7 @@ double LyingHeight(const Recording& recording) {
 
 // Distance from the ground at which particles touch it: the lowest height in frame 0, if the body
 // lies there (lower than the particles' spacing), or the height at which it comes to lie later, if
-// that is lower; 0 where it does not lie.
+// that is lower or noise has put frame 0 below the ground; 0 where it does not lie.
 double ContactRadius(const Recording& recording) {
   if (!recording.ground) return 0;
   const Points nodes = recording.start.leftCols(recording.particle_count());
