@@ -27,12 +27,14 @@ DRAG = 2.0  # 1/s
 class Body:
     """Points, what holds them, and how stiff and lossy they are."""
 
-    def __init__(self, points, grasps, reach, stiffness, fps, loss_time=1.5e-3, mass=0.08):
+    def __init__(self, points, grasps, reach, stiffness, fps, loss_time=1.5e-3, mass=0.08,
+                 field=None):
         self.points = points - points.mean(axis=0) + [0, 0, 0.5]
         self.grasps = grasps  # each a function of the points that marks those it holds
         self.reach = reach  # springs join points nearer than this, m
         self.stiffness = stiffness  # stiffness times length of a spring, N
         self.fps, self.loss_time, self.mass = fps, loss_time, mass
+        self.field = field  # of where along x from -1 to 1: the logarithm of a factor of stiffness
 
 
 def grid(counts, spacing, jitter=0, random=None):
@@ -94,6 +96,15 @@ def corner(x_side, other_side, width, other=1):
     return marks
 
 
+def tapered(along):
+    """Twice as stiff as the mean at one end, half as stiff at the other."""
+    return 0.7 * along
+
+
+def soft_in_the_middle(along):
+    return -0.8 * np.exp(-(along / 0.3) ** 2)
+
+
 def bodies(random):
     jittered = upright(bowed(grid((9, 9, 1), 0.03, 0.008, random)))
     tee = [p for p in grid((11, 11, 1), 0.025, 0.004, random)
@@ -119,6 +130,11 @@ def bodies(random):
         "capsule": Body(capsule, [left, right], 0.05, 2.5, 60),
         "bag": Body(open_bag(0.07, 18, 6, 0.025), [end(2, 1, 0.006)], 0.06, 4, 50),
         "block": Body(grid((7, 4, 4), 0.025), [end(0, -1, 0.006)], 0.045, 3, 50),
+        "tapered_rope": Body(grid((26, 2, 2), 0.02), [left, right], 0.0425, 5, 50, field=tapered),
+        "tapered_sheet": Body(jittered, [corner(-1, 1, 0.04, other=2), corner(1, 1, 0.04, other=2)],
+                              0.066, 3, 30, field=tapered),
+        "soft_ribbon": Body(grid((24, 3, 2), 0.018), [left, right], 0.038, 3, 30,
+                            field=soft_in_the_middle),
     }
 
 
@@ -143,6 +159,11 @@ def system_of(body, random):
     everything = np.concatenate([points, controllers])
     length = np.linalg.norm(everything[springs[:, 0]] - everything[springs[:, 1]], axis=1)
     stiffness = body.stiffness / length
+    if body.field:
+        x = points[:, 0]
+        of_points = (springs < len(points)).all(axis=1)
+        middle = everything[springs[of_points]].mean(axis=1)[:, 0]
+        stiffness[of_points] *= np.exp(body.field(2 * (middle - x.min()) / np.ptp(x) - 1))
     return dict(points=points, controllers=controllers, owner=owner, springs=springs,
                 length=length, stiffness=stiffness, dashpot=body.loss_time * stiffness,
                 mass=np.full(len(points), body.mass / len(points)))

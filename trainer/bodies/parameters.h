@@ -58,6 +58,8 @@ class Parameters {
   std::vector<int> AlongBodyEntries() const;
   // The first entry of the classes' stiffnesses.
   int first_class() const { return first_class_; }
+  // The first entry of the field's modes, if there are any.
+  int first_mode() const { return modes_at_; }
   const SpringClasses& classes() const { return classes_; }
   // The entry of the ground's friction; -1: none.
   int friction() const;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "trainer/bodies/factors.h"
-#include "trainer/bodies/spring_modes.h"
 #include "trainer/solvers/levenberg_marquardt.h"
 
 namespace physpring {
@@ -16,18 +15,18 @@ constexpr int kModes = 14, kFewModes = 6;
 // could not be told from true ones.
 constexpr int kEqualClasses = 30;
 constexpr double kClassJump = 1.01;  // true and superfluous springs may differ in length by 1.5 %
-// The prior's standard deviations: of a mode, and of the difference between a class and the one
-// before it whose springs are much like its own.
+// The prior's standard deviations: of the smoothest mode, and of the difference between a class and
+// the one before it whose springs are much like its own.
 constexpr double kMode = 0.5, kNeighbouringClasses = 0.5;
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
-                               const BodyKind& kind, const SmoothBody::Options& body) {
+                               const BodyKind& kind, const SmoothBody::Options& body,
+                               const Eigen::MatrixXd& modes) {
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
   options.class_dashpots = body.class_loss_times;
-  const bool few = body.numbers == SmoothBody::Numbers::kFew;
   options.classes = {kClassJump, kEqualClasses, body.hands_apart, body.directions};
-  options.modes = SpringModes(start, few ? kFewModes : kModes);
+  options.modes = modes;
   return options;
 }
 
@@ -38,15 +37,23 @@ constexpr double kStiffest = 1.8;
 
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
                        const BodyKind& kind, const Options& options)
-    : factors_(start, SmoothOptions(start, recording, kind, options)), options_(options) {
+    : SmoothBody(start, recording, kind, options,
+                 SpringModes(start, options.numbers == Numbers::kFew ? kFewModes : kModes)) {}
+
+SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
+                       const BodyKind& kind, const Options& options, const FieldModes& modes)
+    : factors_(start, SmoothOptions(start, recording, kind, options, modes.fields)),
+      roughness_(modes.roughness),
+      options_(options) {
   options_.most_rate = std::max(1.0, std::floor(options.most_rate / recording.fps)) * recording.fps;
 }
 
 Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
   Eigen::MatrixXd precision =
       kLevenbergMarquardtPrecision * Eigen::MatrixXd::Identity(size(), size());
-  for (int i = 0; i < size(); ++i) {
-    if (factors_.kind(i) == Parameters::Kind::kMode) precision(i, i) = 1 / (kMode * kMode);
+  for (int m = 0; m < roughness_.size(); ++m) {
+    const int i = factors_.first_mode() + m;
+    precision(i, i) = std::pow(roughness_[m] / kMode, 2);
   }
   const int first = factors_.first_class(), end = first + factors_.classes().lengths;
   for (int i = first; i + 1 < end; ++i) {

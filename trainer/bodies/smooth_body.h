@@ -11,6 +11,7 @@
 
 #include "trainer/bodies/body.h"
 #include "trainer/bodies/parameters.h"
+#include "trainer/bodies/spring_modes.h"
 #include "twin/spring_mass_system.h"
 #include "twin/stability.h"
 
@@ -37,9 +38,11 @@ class SmoothBody {
   double most_rate() const { return options_.most_rate; }
   bool hands_apart() const { return options_.hands_apart; }
   bool directions() const { return options_.directions; }
-  // The prior's precision near x. Classes whose springs are much alike (spring_classes.h) are about
-  // as stiff, but for a few jumps: their differences have a Laplace distribution, as the
-  // normal one that is as steep at x (iteratively reweighted least squares).
+  // The prior's precision near x. The field has the prior of a thin plate's deflection (Wahba,
+  // Spline Models for Observational Data, 1990, ch. 2): the rougher a mode, the smaller it is held.
+  // Classes whose springs are much alike (spring_classes.h) are about as stiff, but for a few
+  // jumps: their differences have a Laplace distribution, as the normal one that is as steep at x
+  // (iteratively reweighted least squares).
   Eigen::MatrixXd Precision(const Eigen::VectorXd& x) const;
 
   // Where the system would need more sub-steps than that, its dashpots are lowered by one factor,
@@ -53,10 +56,14 @@ class SmoothBody {
   SpringMassSystem NearestTo(const SpringMassSystem& system) const;
 
  private:
+  SmoothBody(const SpringMassSystem& start, const Recording& recording, const BodyKind& kind,
+             const Options& options, const FieldModes& modes);
+
   // s: what must be stable. A little above the shortest sub-step, so that rounding needs no more.
   double timestep() const { return 1.001 / (options_.most_rate * kStepSafety); }
 
   Parameters factors_;
+  Eigen::VectorXd roughness_;  // of the field's modes
   Options options_;
 };
 

@@ -30,7 +30,7 @@ Eigen::SparseMatrix<double> Laplacian(const SpringMassSystem& system) {
 
 }  // namespace
 
-Eigen::MatrixXd SpringModes(const SpringMassSystem& system, int count) {
+FieldModes SpringModes(const SpringMassSystem& system, int count) {
   const auto points = static_cast<int>(system.position.cols());
   const Eigen::SparseMatrix<double> laplacian = Laplacian(system);
   const double zero = kZero * laplacian.diagonal().mean();
@@ -44,7 +44,9 @@ Eigen::MatrixXd SpringModes(const SpringMassSystem& system, int count) {
   }
   const int kept = std::min(count, static_cast<int>(modes.values.size()) - zeros);
   Eigen::MatrixXd fields(system.spring_count(), std::max(0, kept));
+  Eigen::VectorXd roughness(fields.cols());
   for (int m = 0; m < fields.cols(); ++m) {
+    roughness[m] = modes.values[zeros + m] / modes.values[zeros];
     const auto mode = modes.vectors.col(zeros + m);
     for (int e = 0; e < system.spring_count(); ++e) {
       fields(e, m) = 0.5 * (mode[system.springs[e][0]] + mode[system.springs[e][1]]);
@@ -54,7 +56,7 @@ Eigen::MatrixXd SpringModes(const SpringMassSystem& system, int count) {
                                     [](double value) { return std::abs(value) > 0.1; });
     if (first != fields.col(m).end() && *first < 0) fields.col(m) *= -1;
   }
-  return fields;
+  return {fields, roughness};
 }
 
 }  // namespace physpring

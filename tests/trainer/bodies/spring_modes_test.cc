@@ -24,13 +24,13 @@ SpringMassSystem Chains(int chains, int nodes) {
   return system;
 }
 
-// The modes of a path of N nodes are cos(pi m (i + 1/2) / N) (Strang, The Discrete Cosine
-// Transform, SIAM Review 41, 1999).
+// The modes of a path of N nodes are cos(pi m (i + 1/2) / N), with eigenvalues 2 - 2 cos(pi m / N)
+// (Strang, The Discrete Cosine Transform, SIAM Review 41, 1999).
 class ModesOfAChain : public testing::TestWithParam<int> {};
 
 TEST_P(ModesOfAChain, AreCosines) {
   const int nodes = GetParam();
-  const Eigen::MatrixXd modes = SpringModes(Chains(1, nodes), 5);
+  const auto [modes, roughness] = SpringModes(Chains(1, nodes), 5);
   ASSERT_EQ(modes.rows(), nodes - 1);
   ASSERT_EQ(modes.cols(), 5);
   for (int m = 1; m <= 5; ++m) {
@@ -38,6 +38,8 @@ TEST_P(ModesOfAChain, AreCosines) {
     for (int e = 0; e < nodes - 1; ++e) expected[e] = std::cos(M_PI * m * (e + 1) / nodes);
     expected /= std::sqrt(expected.squaredNorm() / (nodes - 1));
     EXPECT_LT((modes.col(m - 1) - expected).cwiseAbs().maxCoeff(), 1e-6) << m;
+    const double rougher = (1 - std::cos(M_PI * m / nodes)) / (1 - std::cos(M_PI / nodes));
+    EXPECT_NEAR(roughness[m - 1], rougher, 1e-6 * rougher) << m;
   }
 }
 
@@ -45,12 +47,12 @@ TEST_P(ModesOfAChain, AreCosines) {
 INSTANTIATE_TEST_SUITE_P(Lengths, ModesOfAChain, testing::Values(20, 200));
 
 TEST(SpringModes, AreAsManyAsThereAre) {
-  EXPECT_EQ(SpringModes(Chains(1, 4), 8).cols(), 3);
-  EXPECT_EQ(SpringModes(Chains(1, 4), 0).cols(), 0);
+  EXPECT_EQ(SpringModes(Chains(1, 4), 8).fields.cols(), 3);
+  EXPECT_EQ(SpringModes(Chains(1, 4), 0).fields.cols(), 0);
 }
 
 TEST(SpringModes, OfSeveralObjectsVaryWithinThem) {
-  const Eigen::MatrixXd modes = SpringModes(Chains(3, 40), 3);
+  const Eigen::MatrixXd modes = SpringModes(Chains(3, 40), 3).fields;
   ASSERT_EQ(modes.cols(), 3);
   // the lowest ones of each chain: nearly 0 in the sum over any of them
   for (int m = 0; m < 3; ++m) {
