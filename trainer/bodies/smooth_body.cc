@@ -53,7 +53,8 @@ Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
       kLevenbergMarquardtPrecision * Eigen::MatrixXd::Identity(size(), size());
   for (int m = 0; m < roughness_.size(); ++m) {
     const int i = factors_.first_mode() + m;
-    precision(i, i) = std::pow(roughness_[m] / kMode, 2);
+    const double roughness = options_.numbers == Numbers::kFew ? 1 : roughness_[m];
+    precision(i, i) = std::pow(roughness / kMode, 2);
   }
   const int first = factors_.first_class(), end = first + factors_.classes().lengths;
   for (int i = first; i + 1 < end; ++i) {

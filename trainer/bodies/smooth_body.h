@@ -39,7 +39,8 @@ class SmoothBody {
   bool hands_apart() const { return options_.hands_apart; }
   bool directions() const { return options_.directions; }
   // The prior's precision near x. The field has the prior of a thin plate's deflection (Wahba,
-  // Spline Models for Observational Data, 1990, ch. 2): the rougher a mode, the smaller it is held.
+  // Spline Models for Observational Data, 1990, ch. 2): the rougher a mode, the smaller it is held;
+  // few modes are all smooth, and held alike.
   // Classes whose springs are much alike (spring_classes.h) are about as stiff, but for a few
   // jumps: their differences have a Laplace distribution, as the normal one that is as steep at x
   // (iteratively reweighted least squares).
