@@ -10,6 +10,7 @@ Bodies whose true twin has more are chaotic, and judge no fit.
 """
 
 import argparse
+import copy
 import json
 import pathlib
 
@@ -27,14 +28,18 @@ DRAG = 2.0  # 1/s
 class Body:
     """Points, what holds them, and how stiff and lossy they are."""
 
-    def __init__(self, points, grasps, reach, stiffness, fps, loss_time=1.5e-3, mass=0.08,
-                 field=None):
+    def __init__(self, points, grasps, reach, stiffness, fps, loss_time=1.5e-3, mass=0.08):
         self.points = points - points.mean(axis=0) + [0, 0, 0.5]
         self.grasps = grasps  # each a function of the points that marks those it holds
         self.reach = reach  # springs join points nearer than this, m
         self.stiffness = stiffness  # stiffness times length of a spring, N
         self.fps, self.loss_time, self.mass = fps, loss_time, mass
-        self.field = field  # of where along x from -1 to 1: the logarithm of a factor of stiffness
+        self.field = None  # of where along x from -1 to 1: the logarithm of a factor of stiffness
+
+    def with_field(self, field):
+        body = copy.copy(self)
+        body.field = field
+        return body
 
 
 def grid(counts, spacing, jitter=0, random=None):
@@ -116,7 +121,7 @@ def bodies(random):
     triangles[:, 0] += 0.015 * (np.round(triangles[:, 1] / 0.03) % 2)
     triangles[:, 1] *= np.sqrt(0.75)
     left, right = end(0, -1, 0.012), end(0, 1, 0.012)
-    return {
+    uniform = {
         "rope": Body(grid((26, 2, 2), 0.02), [left, right], 0.0425, 5, 50),
         "whip": Body(grid((32, 1, 1), 0.015), [left], 0.032, 6, 60),
         "ribbon": Body(grid((24, 3, 2), 0.018), [left, right], 0.038, 3, 30),
@@ -130,11 +135,11 @@ def bodies(random):
         "capsule": Body(capsule, [left, right], 0.05, 2.5, 60),
         "bag": Body(open_bag(0.07, 18, 6, 0.025), [end(2, 1, 0.006)], 0.06, 4, 50),
         "block": Body(grid((7, 4, 4), 0.025), [end(0, -1, 0.006)], 0.045, 3, 50),
-        "tapered_rope": Body(grid((26, 2, 2), 0.02), [left, right], 0.0425, 5, 50, field=tapered),
-        "tapered_sheet": Body(jittered, [corner(-1, 1, 0.04, other=2), corner(1, 1, 0.04, other=2)],
-                              0.066, 3, 30, field=tapered),
-        "soft_ribbon": Body(grid((24, 3, 2), 0.018), [left, right], 0.038, 3, 30,
-                            field=soft_in_the_middle),
+    }
+    return uniform | {
+        "tapered_rope": uniform["rope"].with_field(tapered),
+        "tapered_sheet": uniform["sheet"].with_field(tapered),
+        "soft_ribbon": uniform["ribbon"].with_field(soft_in_the_middle),
     }
 
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trainer/bodies/factors.h"
+#include "trainer/bodies/spring_modes.h"
 #include "trainer/solvers/levenberg_marquardt.h"
 
 namespace physpring {
@@ -18,6 +19,14 @@ constexpr double kClassJump = 1.01;  // true and superfluous springs may differ 
 // The prior's standard deviations: of the smoothest mode, and of the difference between a class and
 // the one before it whose springs are much like its own.
 constexpr double kMode = 0.5, kNeighbouringClasses = 0.5;
+
+// Few modes are all smooth, and held alike.
+FieldModes ModesOf(const SpringMassSystem& start, SmoothBody::Numbers numbers) {
+  if (numbers == SmoothBody::Numbers::kAll) return SpringModes(start, kModes);
+  FieldModes few = SpringModes(start, kFewModes);
+  few.roughness.setOnes();
+  return few;
+}
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
                                const BodyKind& kind, const SmoothBody::Options& body,
@@ -37,8 +46,7 @@ constexpr double kStiffest = 1.8;
 
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
                        const BodyKind& kind, const Options& options)
-    : SmoothBody(start, recording, kind, options,
-                 SpringModes(start, options.numbers == Numbers::kFew ? kFewModes : kModes)) {}
+    : SmoothBody(start, recording, kind, options, ModesOf(start, options.numbers)) {}
 
 SmoothBody::SmoothBody(const SpringMassSystem& start, const Recording& recording,
                        const BodyKind& kind, const Options& options, const FieldModes& modes)
@@ -53,8 +61,7 @@ Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
       kLevenbergMarquardtPrecision * Eigen::MatrixXd::Identity(size(), size());
   for (int m = 0; m < roughness_.size(); ++m) {
     const int i = factors_.first_mode() + m;
-    const double roughness = options_.numbers == Numbers::kFew ? 1 : roughness_[m];
-    precision(i, i) = std::pow(roughness / kMode, 2);
+    precision(i, i) = std::pow(roughness_[m] / kMode, 2);
   }
   const int first = factors_.first_class(), end = first + factors_.classes().lengths;
   for (int i = first; i + 1 < end; ++i) {

@@ -11,11 +11,12 @@
 
 #include "trainer/bodies/body.h"
 #include "trainer/bodies/parameters.h"
-#include "trainer/bodies/spring_modes.h"
 #include "twin/spring_mass_system.h"
 #include "twin/stability.h"
 
 namespace physpring {
+
+struct FieldModes;
 
 class SmoothBody {
  public:
@@ -64,7 +65,7 @@ class SmoothBody {
   double timestep() const { return 1.001 / (options_.most_rate * kStepSafety); }
 
   Parameters factors_;
-  Eigen::VectorXd roughness_;  // of the field's modes
+  Eigen::VectorXd roughness_;  // of the field's modes, by which the prior holds them
   Options options_;
 };
 

@@ -12,10 +12,10 @@ struct FieldModes {
   Eigen::VectorXd roughness;  // of each mode: its eigenvalue over the first one's
 };
 
-// At most `count` of them: the eigenvectors with the lowest eigenvalues above 0 of
-// the graph Laplacian of all nodes and controllers, whose links weigh 1 / L^2. A spring has the
-// mean of its two ends. The root mean square of each mode is 1, and its first entry above a tenth
-// of that is positive.
+// At most `count` modes: the eigenvectors with the lowest eigenvalues above 0 of the graph
+// Laplacian of all nodes and controllers, whose links weigh 1 / L^2. A spring has the mean of its
+// two ends. The root mean square of each mode is 1, and its first entry above a tenth of that is
+// positive.
 FieldModes SpringModes(const SpringMassSystem& system, int count);
 
 }  // namespace physpring

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/swung_rope.h"
+#include "trainer/bodies/spring_modes.h"
 #include "trainer/bodies/spring_net.h"
 #include "trainer/bodies/start_system.h"
 #include "twin/stability.h"
@@ -42,6 +43,26 @@ TEST(SmoothBody, IsItsStartAtZero) {
   EXPECT_EQ(body.Apply(zero).stiffness, rope.start.stiffness);
   EXPECT_EQ(body.Apply(zero).dashpot, rope.start.dashpot);
   EXPECT_FALSE(body.IsLimited(zero));
+}
+
+// A thin plate's modes have deviations in proportion to 1 / eigenvalue.
+TEST(SmoothBody, HoldsRoughModesSmallerUnlessTheyAreFew) {
+  const Rope rope(1000);
+  for (const auto numbers : {SmoothBody::Numbers::kAll, SmoothBody::Numbers::kFew}) {
+    const bool few = numbers == SmoothBody::Numbers::kFew;
+    const SmoothBody body(rope.start, rope.recording, SpringNet(),
+                          {.most_rate = kMostRate, .numbers = numbers});
+    const Eigen::MatrixXd precision = body.Precision(Eigen::VectorXd::Zero(body.size()));
+    const int first = body.factors().first_mode();
+    const Eigen::VectorXd roughness = SpringModes(rope.start, 6).roughness;
+    for (int m = 0; m < 6; ++m) {
+      ASSERT_EQ(body.factors().kind(first + m), Parameters::Kind::kMode);
+      const double expected = few ? 1 : roughness[m] * roughness[m];
+      EXPECT_NEAR(precision(first + m, first + m) / precision(first, first), expected,
+                  1e-9 * expected);
+    }
+    EXPECT_GT(roughness[5], 10);
+  }
 }
 
 // At 60 frames a second 2,500 is no whole number of sub-steps a frame.
