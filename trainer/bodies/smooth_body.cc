@@ -85,7 +85,7 @@ SpringMassSystem SmoothBody::Apply(const Eigen::VectorXd& x) const {
   return system;
 }
 
-SpringMassSystem SmoothBody::NearestTo(const SpringMassSystem& system) const {
+Eigen::VectorXd SmoothBody::NearestStiffnesses(const SpringMassSystem& system) const {
   constexpr double kDeviation = 0.3;  // of a logarithm, where a spring is of the mean stiffness
   constexpr double kSoftest = 1e-3;   // of the mean: softer springs count as this soft
   const double mean = system.stiffness.mean();
@@ -99,7 +99,19 @@ SpringMassSystem SmoothBody::NearestTo(const SpringMassSystem& system) const {
   }
   const Eigen::MatrixXd weighted = slope.transpose() * weight.matrix().asDiagonal();
   const Eigen::MatrixXd normal = weighted * slope + Precision(Eigen::VectorXd::Zero(size()));
-  const Eigen::VectorXd x = normal.ldlt().solve(weighted * (stiffness / base).log().matrix());
+  return normal.ldlt().solve(weighted * (stiffness / base).log().matrix());
+}
+
+Eigen::VectorXd SmoothBody::NumbersLike(const SpringMassSystem& system,
+                                        const Eigen::VectorXd& x) const {
+  Eigen::VectorXd like = NearestStiffnesses(system);
+  const int globals = factors_.first_class();
+  for (int i = 2; i < globals; ++i) like[i] = x[i];
+  return like;
+}
+
+SpringMassSystem SmoothBody::NearestTo(const SpringMassSystem& system) const {
+  const Eigen::VectorXd x = NearestStiffnesses(system);
   SpringMassSystem nearest = system;
   nearest.rest_length = factors_.base().rest_length;
   nearest.stiffness = factors_.Apply(x).stiffness;

@@ -57,7 +57,12 @@ class SmoothBody {
   // contact; rest lengths of the start.
   SpringMassSystem NearestTo(const SpringMassSystem& system) const;
 
+  // Numbers that make the body's springs most like those of `system`, in the same sense; of its
+  // loss time, drag and contact as in `x`, numbers of a body of this kind of other springs.
+  Eigen::VectorXd NumbersLike(const SpringMassSystem& system, const Eigen::VectorXd& x) const;
+
  private:
+  Eigen::VectorXd NearestStiffnesses(const SpringMassSystem& system) const;
   SmoothBody(const SpringMassSystem& start, const Recording& recording, const BodyKind& kind,
              const Options& options, const FieldModes& modes);
 

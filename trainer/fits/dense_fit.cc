@@ -47,7 +47,7 @@ FittedNet FitBody(const ChosenBody& chosen, const FitData& data, const TrainOpti
     return FitNet(chosen, data, options, work.Part("net", kChosen, kFitted));
   }
   const ChosenBody chain = FitChain(chosen, data, options, work.Part("chain", kChosen, kFitted));
-  return {chain.System(data.recordings[0]), chain.body};
+  return {chain.System(data.recordings[0]), chain.body, options.substeps};
 }
 
 Twin FitByOneClock(const FitData& data, const TrainOptions& options, const Work& work) {
@@ -55,12 +55,14 @@ Twin FitByOneClock(const FitData& data, const TrainOptions& options, const Work&
   const ChosenBody chosen = ChooseBody(data, options, work.Part("choosing the model", 0, kChosen));
   work.Reached(TwinOf(chosen.System(first), chosen.body, data, options));
 
-  const auto [system, body] = FitBody(chosen, data, options, work);
-  Twin twin = TwinOf(system, body, data, options);
+  const auto [system, body, substeps] = FitBody(chosen, data, options, work);
+  TrainOptions finished = options;
+  finished.substeps = substeps;
+  Twin twin = TwinOf(system, body, data, finished);
   work.Reached(twin);
   if (!body.kind->has_single_springs()) return twin;  // a chain: its samples predicted badly
   const EstimatedPosterior posterior =
-      EstimatePosterior(system, body, FitEpisodes(data, kMostPosteriorRecordings), options,
+      EstimatePosterior(system, body, FitEpisodes(data, kMostPosteriorRecordings), finished,
                         work.Part("posterior", kFitted, 1));
   twin.posterior = posterior.samples;
   twin.material = EstimateMaterial(system, posterior.intervals);

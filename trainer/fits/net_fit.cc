@@ -8,6 +8,7 @@
 #include "trainer/fits/factor_fit.h"
 #include "trainer/fits/smooth_choice.h"
 #include "trainer/fits/smooth_fit.h"
+#include "trainer/fits/smooth_refinement.h"
 #include "trainer/fits/spring_fit.h"
 #include "trainer/motion/residual_correlation.h"
 #include "trainer/motion/track_error.h"
@@ -22,7 +23,7 @@ constexpr GainSchedule kAllGains{0, 6};
 constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the error to this share
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
-constexpr double kSmoothPart = 0.3, kAllFramesPart = 0.35, kTriedSmooth = 0.4,
+constexpr double kSmoothPart = 0.28, kRefined = 0.32, kAllFramesPart = 0.35, kTriedSmooth = 0.4,
                  kTriedStiffnesses = 0.45, kTried = 0.6, kCommon = 0.65;
 
 bool HasManyParticles(const FitData& data) {
@@ -59,7 +60,7 @@ class NetFit {
 
   ChosenBody model_;
   const FitData& data_;
-  const TrainOptions& options_;
+  TrainOptions options_;
   const Work& work_;
   std::vector<Episode> episodes_;  // all fit frames
 };
@@ -93,13 +94,15 @@ bool AsksForSprings(const TrainOptions& options) {
 // The best smooth body. It is chosen by no more frames than tell, and fitted to all.
 SmoothlyChosen NetFit::FitSmooth() {
   const FitData some = ShortMotions(data_, kMostCommonRecordings);
-  SmoothlyChosen smooth =
-      ChooseSmoothBody(model_, FitEpisodes(some, kMostCommonRecordings), options_,
-                       HasManyParticles(data_), work_.Stretch("smooth", 0, kSmoothPart));
+  const std::vector<Episode> episodes = FitEpisodes(some, kMostCommonRecordings);
+  SmoothlyChosen smooth = ChooseSmoothBody(model_, episodes, options_, HasManyParticles(data_),
+                                           work_.Stretch("smooth", 0, kSmoothPart));
+  smooth = Refine(smooth, episodes, options_, work_.Stretch("refined", kSmoothPart, kRefined));
   model_ = smooth.model;
+  options_.substeps = smooth.substeps;
   if (ParticleFrames(some, kMostCommonRecordings) < ParticleFrames(data_, kMostCommonRecordings)) {
     smooth.fit = FitToTheEnd(smooth.fit, model_, episodes_, options_,
-                             work_.Part("smooth body, all frames", kSmoothPart, kAllFramesPart));
+                             work_.Part("smooth body, all frames", kRefined, kAllFramesPart));
   }
   return smooth;
 }
@@ -153,8 +156,8 @@ FittedNet NetFit::FitSpringsAlone() const {
         WithCommonFactors(model_.WithOtherVelocity(), work_.Stretch("other", compared, common));
     if (ErrorOf(other) < ErrorOf(model)) model = other;
   }
-  return {FitSpringsOf(model, data_, options_, work_.Part("single springs", common, 1)),
-          model.body};
+  return {FitSpringsOf(model, data_, options_, work_.Part("single springs", common, 1)), model.body,
+          options_.substeps};
 }
 
 FittedNet NetFit::Run() {
@@ -163,21 +166,21 @@ FittedNet NetFit::Run() {
   const SmoothlyChosen smooth = FitSmooth();
   const SpringMassSystem system = smooth.fit.System();
   if (smooth_only || smooth.correlation < kSurelyNoise || LeavesOutSingleValues(data_, options_)) {
-    return {system, model_.body};
+    return {system, model_.body, options_.substeps};
   }
   switch (BestPredictor(smooth)) {
     case Kind::kStiffnesses:
       return {FitStiffnesses(system, model_.body, data_, options_,
                              work_.Part("stiffnesses", kTried, 1)),
-              model_.body};
+              model_.body, options_.substeps};
     case Kind::kSprings:
       return {FitSpringsOf(WithCommonFactors(model_, work_.Stretch("all", kTried, kCommon)), data_,
                            options_, work_.Part("single springs", kCommon, 1)),
-              model_.body};
+              model_.body, options_.substeps};
     case Kind::kSmooth:
       break;
   }
-  return {system, model_.body};
+  return {system, model_.body, options_.substeps};
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ namespace physpring {
 
 struct FittedNet {
   SpringMassSystem system;
-  Body body;  // the chosen one, but for the cone and the controllers' velocity
+  Body body;         // the chosen one, but for the cone and the controllers' velocity
+  int substeps = 0;  // a frame, that it was fitted with; 0: as many as are stable
 };
 
 // The system of the chosen body that fits the recordings. With --method smooth it is the smooth

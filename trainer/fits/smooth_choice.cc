@@ -107,7 +107,9 @@ class SmoothChoice {
   void Consider(const SmoothTrial& trial);
   void FitBest(const Work& work);
   void TryDirections(const Work& work);
-  SmoothlyChosen Chosen() const { return {fitted_->fit, fitted_->model, fitted_->correlation}; }
+  SmoothlyChosen Chosen() const {
+    return {fitted_->fit, fitted_->model, fitted_->correlation, options_.substeps};
+  }
 
   ChosenBody model_;  // of the next trial
   const Recording& recording_;

@@ -17,6 +17,7 @@ struct SmoothlyChosen {
   SmoothlyFitted fit;
   ChosenBody model;    // as given, but for the cone and the controllers' velocity
   double correlation;  // of what the fit leaves (residual_correlation.h)
+  int substeps;        // a frame, that it was fitted with; 0: as many as are stable
 };
 
 // The first smooth body that surely leaves no more than noise of the episodes, or else the best
