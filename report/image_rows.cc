@@ -94,11 +94,11 @@ std::string FormatImageTable(const EvaluatedRecording& evaluated) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     text += fmt::format(" | {:>5} {:>5} {:>6} {:>5} {:>6}", "IoU", "PSNR", "SSIM", "box", "box");
   }
-  text += "\n";
+  text += '\n';
   for (const ImageRow& row : images.rows) {
     text += fmt::format("{:<{}}", row.name, width);
     for (const Part& part : parts) text += Cells(MeanOverFrames(row, part.first, part.end));
-    text += "\n";
+    text += '\n';
   }
   return text;
 }
