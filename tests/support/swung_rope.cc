@@ -2,6 +2,7 @@
 #include "tests/support/swung_rope.h"
 
 #include <cmath>
+#include <random>
 
 #include "twin/predict.h"
 #include "twin/twin.h"
@@ -41,6 +42,14 @@ void MoveAs(const SpringMassSystem& system, bool controller_velocity, Recording*
   const std::vector<Points> motion = Predict(twin, 0, *recording, {});
   for (std::size_t t = 0; t < motion.size(); ++t) {
     recording->points[t] = motion[t].leftCols(recording->point_count());
+  }
+}
+
+void AddNoise(Recording* recording, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 5e-4);
+  for (int t = 1; t < recording->frame_count(); ++t) {
+    for (double& value : recording->points[t].reshaped()) value += noise(random);
   }
 }
 

@@ -15,6 +15,9 @@ Recording SwungRope(int particles, int frames);
 // Lets the recording's points move as `system` moves them.
 void MoveAs(const SpringMassSystem& system, bool controller_velocity, Recording* recording);
 
+// Adds 0.5 mm of noise to each coordinate of the points, but for those of frame 0.
+void AddNoise(Recording* recording, unsigned seed);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TESTS_SUPPORT_SWUNG_ROPE_H_

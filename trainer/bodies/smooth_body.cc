@@ -105,8 +105,8 @@ Eigen::VectorXd SmoothBody::NearestStiffnesses(const SpringMassSystem& system) c
 Eigen::VectorXd SmoothBody::NumbersLike(const SpringMassSystem& system,
                                         const Eigen::VectorXd& x) const {
   Eigen::VectorXd like = NearestStiffnesses(system);
-  const int globals = factors_.first_class();
-  for (int i = 2; i < globals; ++i) like[i] = x[i];
+  // of the common numbers, the first two are of stiffness, the object's and the hands'
+  for (int i = 2; i < factors_.first_class(); ++i) like[i] = x[i];
   return like;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "trainer/bodies/factors.h"
 #include "trainer/fits/superfluous_springs.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 
 #include "tests/support/interrupted_work.h"
 #include "tests/support/same_twin.h"
@@ -112,18 +111,10 @@ TEST(FitDense, FindsTheMaterialOfASmoothBody) {
   EXPECT_NEAR(found.drag, truth.drag, 0.02 * truth.drag);
 }
 
-void AddNoise(Recording* recording, unsigned seed = 5) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0, 5e-4);
-  for (std::size_t frame = 1; frame < recording->points.size(); ++frame) {
-    for (double& value : recording->points[frame].reshaped()) value += noise(random);
-  }
-}
-
 // What is left of a body that the smooth one can be is noise, so it gets no single springs.
 TEST(FitDense, SmoothBodyStaysWhereItLeavesNoise) {
   SmoothRope rope = MakeSmoothRope();
-  AddNoise(&rope.data.recordings[0]);
+  AddNoise(&rope.data.recordings[0], 5);
   const auto fit = [&](TrainOptions::Method method, WorkLog* log) {
     return RunLogged(
         [&](const Work& work) { return FitDense(rope.data, OptionsOfSmoothRope(method), work); },
@@ -138,7 +129,7 @@ TEST(FitDense, SmoothBodyStaysWhereItLeavesNoise) {
 TEST(FitDense, FindsWhetherDashpotsFeelTheControllers) {
   for (const bool felt : {true, false}) {
     SmoothRope rope = MakeSmoothRope(felt, 8e-3);
-    AddNoise(&rope.data.recordings[0]);
+    AddNoise(&rope.data.recordings[0], 5);
     for (const bool smooth : {true, false}) {
       TrainOptions options = OptionsOfSmoothRope(TrainOptions::Method::kFull);
       options.controller_velocity = {};
@@ -155,7 +146,7 @@ bool Holds(const Estimate& estimate, double truth) {
 // The intervals hold the truth and are of some use; four times the noise makes them wider.
 TEST(FitDense, SaysWhatTheMaterialIs) {
   SmoothRope rope = MakeSmoothRope();
-  AddNoise(&rope.data.recordings[0]);
+  AddNoise(&rope.data.recordings[0], 5);
   const auto material = [&] {
     return *Fit(rope.data, OptionsOfSmoothRope(TrainOptions::Method::kSmooth)).material;
   };
@@ -176,7 +167,7 @@ TEST(FitDense, SaysWhatTheMaterialIs) {
 // Twins that are drawn differ, and predict about as well: what is left open hardly shows.
 TEST(FitDense, LeavesOpenWhatHardlyShows) {
   SmoothRope rope = MakeSmoothRope();
-  AddNoise(&rope.data.recordings[0]);
+  AddNoise(&rope.data.recordings[0], 5);
   const Twin twin = Fit(rope.data, OptionsOfSmoothRope(TrainOptions::Method::kSmooth));
   ASSERT_FALSE(twin.posterior.empty());
   const double fitted = TrackError(twin, rope.data.recordings[0]);
@@ -196,7 +187,7 @@ TEST(FitDense, SaysWhatARecordingDoesNotTell) {
     recording.points[frame] = recording.points[0];
     recording.controllers[frame] = recording.controllers[0];
   }
-  AddNoise(&recording);
+  AddNoise(&recording, 5);
   const Material found =
       *Fit(rope.data, OptionsOfSmoothRope(TrainOptions::Method::kSmooth)).material;
   EXPECT_FALSE(found.loss_time.IsTold());

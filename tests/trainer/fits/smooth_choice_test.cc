@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "tests/support/interrupted_work.h"
 #include "tests/support/swung_rope.h"
@@ -19,7 +18,7 @@ namespace {
 // loss time, measured with noise.
 FitData DraggedRope(FrictionCone cone) {
   constexpr int kParticles = 8, kFrames = 30;
-  constexpr double kLossTime = 2e-3, kNoise = 5e-4;
+  constexpr double kLossTime = 2e-3;
   Recording recording = SwungRope(kParticles, kFrames);
   recording.ground = Eigen::Vector4d(0, 0, 1, 0);
   for (auto point : recording.start.colwise()) {
@@ -39,11 +38,7 @@ FitData DraggedRope(FrictionCone cone) {
   truth.contact.surface.friction = 0.6;
   truth.contact.surface.cone = cone;
   MoveAs(truth, true, &recording);
-  std::mt19937 random(5);
-  std::normal_distribution<double> noise(0, kNoise);
-  for (int t = 1; t < kFrames; ++t) {
-    for (double& value : recording.points[t].reshaped()) value += noise(random);
-  }
+  AddNoise(&recording, 5);
   FitData data;
   data.recordings.push_back(std::move(recording));
   data.continuous_recording.push_back(0);

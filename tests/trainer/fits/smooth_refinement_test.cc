@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "tests/support/interrupted_work.h"
 #include "tests/support/swung_sheet.h"
 #include "trainer/bodies/candidates.h"
@@ -31,15 +29,9 @@ SpringMassSystem Truth(const Recording& recording) {
 
 // Its motion, measured with noise.
 FitData Measured() {
-  constexpr int kFrames = 40;
-  constexpr double kNoise = 5e-4;  // m
-  Recording recording = SwungSheet(kFrames);
+  Recording recording = SwungSheet(40);
   MoveAs(Truth(recording), true, &recording);
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise(0, kNoise);
-  for (int t = 1; t < kFrames; ++t) {
-    for (double& value : recording.points[t].reshaped()) value += noise(random);
-  }
+  AddNoise(&recording, 3);
   FitData data;
   data.recordings.push_back(std::move(recording));
   data.continuous_recording.push_back(0);
