@@ -16,16 +16,24 @@ constexpr int kModes = 14, kFewModes = 6;
 // could not be told from true ones.
 constexpr int kEqualClasses = 30;
 constexpr double kClassJump = 1.01;  // true and superfluous springs may differ in length by 1.5 %
-// The prior's standard deviations: of the smoothest mode, and of the difference between a class and
-// the one before it whose springs are much like its own.
-constexpr double kMode = 0.5, kNeighbouringClasses = 0.5;
+// The prior's standard deviations: of the difference between a class and the one before it whose
+// springs are much like its own, and of an even slope of the field.
+constexpr double kNeighbouringClasses = 0.5, kSlope = 0.5;
 
-// Few modes are all smooth, and held alike.
+// Few modes are all smooth, and held alike. Even slopes are not rough at all.
 FieldModes ModesOf(const SpringMassSystem& start, SmoothBody::Numbers numbers) {
-  if (numbers == SmoothBody::Numbers::kAll) return SpringModes(start, kModes);
-  FieldModes few = SpringModes(start, kFewModes);
-  few.roughness.setOnes();
-  return few;
+  if (numbers == SmoothBody::Numbers::kFew) {
+    FieldModes few = SpringModes(start, kFewModes);
+    few.roughness.setOnes();
+    return few;
+  }
+  const Eigen::MatrixXd slopes = EvenSlopes(start);
+  const FieldModes modes = SpringModes(start, kModes);
+  FieldModes all{Eigen::MatrixXd(start.spring_count(), slopes.cols() + modes.fields.cols()),
+                 Eigen::VectorXd(slopes.cols() + modes.fields.cols())};
+  all.fields << slopes, modes.fields;
+  all.roughness << Eigen::VectorXd::Zero(slopes.cols()), modes.roughness;
+  return all;
 }
 
 ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& recording,
@@ -61,9 +69,16 @@ Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
       kLevenbergMarquardtPrecision * Eigen::MatrixXd::Identity(size(), size());
   for (int m = 0; m < roughness_.size(); ++m) {
     const int i = factors_.first_mode() + m;
-    precision(i, i) = std::pow(roughness_[m] / kMode, 2);
+    precision(i, i) = roughness_[m] > 0 ? std::pow(roughness_[m] / options_.widths.field, 2)
+                                        : std::pow(kSlope, -2);
+  }
+  const double tie = std::pow(options_.widths.hands, -2);
+  for (int i : {0, 2}) {  // stiffness and loss time of the object; after each, that of controllers
+    precision.block<2, 2>(i, i) += tie * Eigen::Matrix2d{{1, -1}, {-1, 1}};
   }
   const int first = factors_.first_class(), end = first + factors_.classes().lengths;
+  for (int i = first; i < end; ++i) precision(i, i) = std::pow(options_.widths.classes, -2);
+  for (int i = end; i < first + factors_.classes().count; ++i) precision(i, i) += tie;
   for (int i = first; i + 1 < end; ++i) {
     if (!factors_.classes().like_the_last[static_cast<std::size_t>(i + 1 - first)]) continue;
     const double alike =

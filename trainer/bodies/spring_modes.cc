@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/bodies/spring_modes.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,12 @@ Eigen::SparseMatrix<double> Laplacian(const SpringMassSystem& system) {
   return laplacian;
 }
 
+void MakeFirstPositive(Eigen::Ref<Eigen::VectorXd> field) {
+  const auto first =
+      std::find_if(field.begin(), field.end(), [](double value) { return std::abs(value) > 0.1; });
+  if (first != field.end() && *first < 0) field *= -1;
+}
+
 }  // namespace
 
 FieldModes SpringModes(const SpringMassSystem& system, int count) {
@@ -52,11 +59,30 @@ FieldModes SpringModes(const SpringMassSystem& system, int count) {
       fields(e, m) = 0.5 * (mode[system.springs[e][0]] + mode[system.springs[e][1]]);
     }
     fields.col(m) /= std::sqrt(fields.col(m).squaredNorm() / system.spring_count());
-    const auto first = std::find_if(fields.col(m).begin(), fields.col(m).end(),
-                                    [](double value) { return std::abs(value) > 0.1; });
-    if (first != fields.col(m).end() && *first < 0) fields.col(m) *= -1;
+    MakeFirstPositive(fields.col(m));
   }
   return {fields, roughness};
+}
+
+Eigen::MatrixXd EvenSlopes(const SpringMassSystem& system) {
+  constexpr double kLeastSpread = 0.2;
+  Points middle(3, system.spring_count());
+  for (int e = 0; e < system.spring_count(); ++e) {
+    const auto [a, b] = system.springs[e];
+    middle.col(e) = 0.5 * (system.position.col(a) + system.position.col(b));
+  }
+  middle.colwise() -= middle.rowwise().mean().eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(middle * middle.transpose());
+  const Eigen::Vector3d spread = axes.eigenvalues().cwiseMax(0).cwiseSqrt();  // rising
+  int count = 0;
+  while (count < 3 && spread[2 - count] > kLeastSpread * spread[2]) ++count;
+  Eigen::MatrixXd slopes(system.spring_count(), count);
+  for (int i = 0; i < count; ++i) {
+    slopes.col(i) = std::sqrt(system.spring_count()) / spread[2 - i] *
+                    (middle.transpose() * axes.eigenvectors().col(2 - i));
+    MakeFirstPositive(slopes.col(i));
+  }
+  return slopes;
 }
 
 }  // namespace physpring

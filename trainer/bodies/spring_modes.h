@@ -18,6 +18,12 @@ struct FieldModes {
 // positive.
 FieldModes SpringModes(const SpringMassSystem& system, int count);
 
+// Fields that rise evenly along the body's one to three long directions: those of the principal
+// axes of the springs' middles along which they spread by a fifth of the widest. The root mean
+// square of each is 1, its mean 0. A thin plate bends in none of them (Wahba, Spline Models for
+// Observational Data, 1990, ch. 2), where the modes above all end flat.
+Eigen::MatrixXd EvenSlopes(const SpringMassSystem& system);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TRAINER_BODIES_SPRING_MODES_H_

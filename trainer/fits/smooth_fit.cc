@@ -15,21 +15,28 @@ constexpr int kMostRoughSteps = 40, kMostSteps = 80;  // with each gain
 constexpr int kUpdates = 4;                           // of the Jacobian in a step
 constexpr double kSmoothDamping = 1e-2;               // the damping with which each stage begins
 
-// How a body follows the episodes: with each of these gains of the observer, one after the other.
-struct Course {
-  std::vector<double> gains;
-  bool rough;  // in floats, and not to the end
+// A stage of a fit: under an observer of this gain, and how far down.
+struct Stage {
+  enum class Depth {
+    kRough,  // in floats, and not to the end
+    kEnd,
+    kBottom  // in doubles, with derivatives that are exact enough for the last steps
+  };
+  double gain;
+  Depth depth;
 };
+using Course = std::vector<Stage>;
 
 struct SmoothState {
   Eigen::VectorXd x;
-  int gain = 0;                     // an index of Course::gains
-  int iteration = 0;                // steps made with this gain
+  int stage = 0;                    // of the course
+  int iteration = 0;                // steps made in this stage
   double damping = kSmoothDamping;  // of the next step
+  double least_rate = 0;            // sub-steps a second, at the bottom
 
   template <class Visitor>
   void Visit(Visitor&& visit) {
-    visit(x, gain, iteration, damping);
+    visit(x, stage, iteration, damping, least_rate);
   }
 };
 
@@ -45,7 +52,7 @@ SpringMassSystem StartOf(const ChosenBody& chosen, const Recording& recording) {
 class SmoothFit {
  public:
   SmoothFit(const SmoothBody& body, const ChosenBody& chosen, const std::vector<Episode>& episodes,
-            const TrainOptions& options, const Course& course)
+            const TrainOptions& options, const Course& course = {})
       : body_(body),
         chosen_(chosen),
         episodes_(episodes),
@@ -54,33 +61,51 @@ class SmoothFit {
         recording_(OnlyFitFrames(episodes.at(0))) {}
 
   StepReport Step(SmoothState* state) const;
+  std::optional<LinearisedFit> LineariseAt(const Eigen::VectorXd& x) const;
 
  private:
-  MotionProblem::Options Follow(double gain) const;
-  double ToleranceFor(int residuals) const;
+  MotionProblem::Options Follow(const Stage& stage) const;
 
   const SmoothBody& body_;
   const ChosenBody& chosen_;
   const std::vector<Episode>& episodes_;
   const TrainOptions& options_;
-  const Course& course_;
+  Course course_;
   Recording recording_;
 };
 
-MotionProblem::Options SmoothFit::Follow(double gain) const {
+MotionProblem::Options SmoothFit::Follow(const Stage& stage) const {
   MotionProblem::Options follow = FollowOptions(recording_, chosen_.body, options_);
   follow.threads = 1;  // the differences run in parallel
-  follow.rollout.observer_gain = gain;
-  follow.rollout.single_precision |= course_.rough;
+  follow.rollout.observer_gain = stage.gain;
+  if (stage.depth == Stage::Depth::kRough) follow.rollout.single_precision = true;
+  if (stage.depth == Stage::Depth::kBottom) follow.rollout.single_precision = false;
   follow.most_rate = body_.most_rate();
   return follow;
 }
 
+// The step of differences at the bottom. Near it, the error of a long one is as large as the slope
+// itself, and the fit would stop above. Contacts make residuals jump, and want a long one still.
+double BottomDifference(const Recording& recording) {
+  constexpr double kExact = 1e-5;
+  return recording.ground ? FactorDifference(recording) : kExact;
+}
+
 // A fit has arrived where a step gains less than one in chi^2, which is about the number of
 // residuals where these are noise. Of many residuals a smaller part of them is enough.
-double SmoothFit::ToleranceFor(int residuals) const {
+double ToleranceFor(const Stage& stage, int residuals) {
   constexpr double kLeast = 2e-5;
-  return course_.rough ? kRoughTolerance : std::max(kLeast, 1.0 / std::max(1, residuals));
+  return stage.depth == Stage::Depth::kRough ? kRoughTolerance
+                                             : std::max(kLeast, 1.0 / std::max(1, residuals));
+}
+
+// Sub-steps a second.
+double HighestRate(const LiftedMotion::Substeps& substeps, const std::vector<Episode>& episodes) {
+  double highest = 0;
+  for (std::size_t e = 0; e < substeps.size(); ++e) {
+    highest = std::max(highest, substeps[e] * episodes[e].recording->fps);
+  }
+  return highest;
 }
 
 SystemMap MapOf(const SmoothBody& body) {
@@ -88,39 +113,58 @@ SystemMap MapOf(const SmoothBody& body) {
 }
 
 StepReport SmoothFit::Step(SmoothState* state) const {
-  const double gain = course_.gains.at(static_cast<std::size_t>(state->gain));
-  MotionProblem problem(MapOf(body_), episodes_, Follow(gain));
-  // a sub-step more or less would look like a slope
-  MotionProblem::Options kept = Follow(gain);
+  const Stage& stage = course_.at(static_cast<std::size_t>(state->stage));
+  const bool rough = stage.depth == Stage::Depth::kRough;
+  const bool bottom = stage.depth == Stage::Depth::kBottom;
+  MotionProblem problem(MapOf(body_), episodes_, Follow(stage));
+  // A sub-step more or less would look like a slope. At the bottom it would stop the fit, too.
+  MotionProblem::Options kept = Follow(stage);
   kept.keep_substeps = true;
+  kept.least_rate = state->least_rate;
   MotionProblem nearby(MapOf(body_), episodes_, kept);
   LevenbergMarquardtState fit{state->x, state->damping};
   const bool damped = state->damping > kSmoothDamping;
   fit.converged = true;
   if (nearby.FixSubsteps(fit.x)) {
     LevenbergMarquardtOptions levenberg = chosen_.body.kind->FactorOptions(recording_);
+    if (bottom) levenberg.difference = BottomDifference(recording_);
     levenberg.precisions = body_.Precision(fit.x);
-    levenberg.tolerance = ToleranceFor(problem.residual_count());
+    levenberg.tolerance = ToleranceFor(stage, problem.residual_count());
     levenberg.updates = kUpdates;
     levenberg.threads = options_.threads;
-    fit = LevenbergMarquardtStep(ResidualsOf(problem), fit, levenberg, ResidualsOf(nearby));
+    if (bottom) state->least_rate = HighestRate(nearby.substeps(), episodes_);
+    fit = LevenbergMarquardtStep(ResidualsOf(bottom ? nearby : problem), fit, levenberg,
+                                 ResidualsOf(nearby));
   }
   state->x = fit.x;
   state->damping = fit.damping;
   ++state->iteration;
-  const int most_steps = course_.rough ? kMostRoughSteps : kMostSteps;
-  const double of_gain = static_cast<double>(state->iteration) / most_steps;
-  StepReport report{false, (state->gain + of_gain) / static_cast<double>(course_.gains.size()),
-                    fmt::format("smooth body, {}: {:.3f} mm",
-                                gain > 0 ? fmt::format("observer's gain {}", gain) : "free motion",
-                                PointMillimetres(fit.mean_square))};
+  const int most_steps = rough ? kMostRoughSteps : kMostSteps;
+  const double of_stage = static_cast<double>(state->iteration) / most_steps;
+  StepReport report{
+      false, (state->stage + of_stage) / static_cast<double>(course_.size()),
+      fmt::format("smooth body, {}: {:.3f} mm",
+                  stage.gain > 0 ? fmt::format("observer's gain {}", stage.gain) : "free motion",
+                  PointMillimetres(fit.mean_square))};
   // a short step gains little wherever it is made: one that is not so damped has to confirm it
   if (fit.converged) state->damping = kSmoothDamping;
   if (state->iteration < most_steps && (!fit.converged || damped)) return report;
   state->iteration = 0;
   state->damping = kSmoothDamping;
-  report.done = ++state->gain == static_cast<int>(course_.gains.size());
+  report.done = ++state->stage == static_cast<int>(course_.size());
   return report;
+}
+
+std::optional<LinearisedFit> SmoothFit::LineariseAt(const Eigen::VectorXd& x) const {
+  MotionProblem::Options kept = Follow({0, Stage::Depth::kBottom});
+  kept.keep_substeps = true;
+  MotionProblem nearby(MapOf(body_), episodes_, kept);
+  if (!nearby.FixSubsteps(x)) return {};
+  std::optional<Eigen::VectorXd> residuals = nearby.Residuals(x);
+  if (!residuals) return {};
+  const Differences differences{0, body_.size(), BottomDifference(recording_), options_.threads};
+  Eigen::MatrixXd slope = DifferenceColumns(ResidualsOf(nearby), x, *residuals, differences);
+  return LinearisedFit{std::move(*residuals), std::move(slope)};
 }
 
 SmoothlyFitted Fit(const SmoothlyFitted& start, const Course& course, const ChosenBody& chosen,
@@ -145,13 +189,23 @@ SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episod
 SmoothlyFitted FitRoughly(const SmoothlyFitted& start, const std::vector<double>& gains,
                           const ChosenBody& chosen, const std::vector<Episode>& episodes,
                           const TrainOptions& options, const Work& work) {
-  return Fit(start, {gains, true}, chosen, episodes, options, work);
+  Course course;
+  for (double gain : gains) course.push_back({gain, Stage::Depth::kRough});
+  return Fit(start, course, chosen, episodes, options, work);
 }
 
 SmoothlyFitted FitToTheEnd(const SmoothlyFitted& start, const ChosenBody& chosen,
                            const std::vector<Episode>& episodes, const TrainOptions& options,
                            const Work& work) {
-  return Fit(start, {{0}, false}, chosen, episodes, options, work);
+  Course course = {{0, Stage::Depth::kEnd}};
+  if (!episodes.at(0).recording->ground) course.push_back({0, Stage::Depth::kBottom});
+  return Fit(start, course, chosen, episodes, options, work);
+}
+
+std::optional<LinearisedFit> LineariseFit(const SmoothlyFitted& fit, const ChosenBody& chosen,
+                                          const std::vector<Episode>& episodes,
+                                          const TrainOptions& options) {
+  return SmoothFit(fit.body, chosen, episodes, options).LineariseAt(fit.x);
 }
 
 }  // namespace physpring

@@ -5,6 +5,7 @@
 #ifndef PHYSPRING_TRAINER_FITS_SMOOTH_FIT_H_
 #define PHYSPRING_TRAINER_FITS_SMOOTH_FIT_H_
 
+#include <optional>
 #include <vector>
 
 #include "trainer/bodies/chosen_body.h"
@@ -21,6 +22,12 @@ struct SmoothlyFitted {
   SpringMassSystem System() const { return body.Apply(x); }
 };
 
+// What a fit leaves, and how that depends on its numbers.
+struct LinearisedFit {
+  Eigen::VectorXd residuals;  // m
+  Eigen::MatrixXd slope;      // residuals x numbers
+};
+
 // The body that fits start from: its contact with the ground as chosen, all else as soft as the
 // choice began, and its loss time `lossier` times as long.
 SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
@@ -35,6 +42,11 @@ SmoothlyFitted FitRoughly(const SmoothlyFitted& start, const std::vector<double>
 SmoothlyFitted FitToTheEnd(const SmoothlyFitted& start, const ChosenBody& chosen,
                            const std::vector<Episode>& episodes, const TrainOptions& options,
                            const Work& work);
+
+// Of free motions; nothing where the fit cannot be followed.
+std::optional<LinearisedFit> LineariseFit(const SmoothlyFitted& fit, const ChosenBody& chosen,
+                                          const std::vector<Episode>& episodes,
+                                          const TrainOptions& options);
 
 }  // namespace physpring
 

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "trainer/bodies/factors.h"
+#include "trainer/fits/prior_widths.h"
 #include "trainer/fits/superfluous_springs.h"
 #include "trainer/motion/residual_correlation.h"
 #include "trainer/motion/track_error.h"
@@ -14,18 +17,50 @@
 namespace physpring {
 namespace {
 
-// Fewer springs may raise the error by this part: the others bend a little to the motion, too.
+// Fewer springs, or a narrower prior, may raise the error by this part: others bend a little to the
+// motion, too.
 constexpr double kMostLoss = 0.02;
-constexpr double kLeastGain = 0.005;             // shorter sub-steps must lower it by this part
-constexpr int kMostRounds = 3;                   // of leaving springs out
+// Shorter sub-steps must lower the misfit by so much, in variances of the noise. One more number of
+// a body lowers it by about 1 (Wilks, Annals of Mathematical Statistics 9, 1938).
+constexpr double kLeastGain = 20;
 constexpr double kFiner = 3, kLeastFiner = 1.5;  // times the sub-steps
-constexpr double kSparseDone = 0.4, kFinerDone = 0.9;
+constexpr int kMostRounds = 3;                   // of each refinement
+// A new start may fit worse by this part: its body is the simpler one. Its prior holds classes as
+// near to the law of all springs as this.
+constexpr double kMostLossOfStart = 0.005, kAlikeClasses = 0.12;
+const std::vector<double> kGainsOfStart = {0.2, 0.1};  // of the observer
+// Parts of the work.
+constexpr double kSparseDone = 0.3, kFinerDone = 0.6, kStartDone = 0.8, kSparseAgain = 0.85;
 
 // Whether a number of sub-steps a frame is the same time step in all of them.
 bool HaveOneFrameRate(const std::vector<Episode>& episodes) {
   return std::all_of(episodes.begin(), episodes.end(), [&](const Episode& one) {
     return one.recording->fps == episodes[0].recording->fps;
   });
+}
+
+// How many coordinates are measured, at most.
+double MeasuredCoordinates(const std::vector<Episode>& episodes) {
+  double count = 0;
+  for (const Episode& one : episodes)
+    count += 3 * (one.frames - 1.0) * one.recording->point_count();
+  return count;
+}
+
+// The same stiffness times length, the median of all, for all springs of the object.
+SpringMassSystem Uniform(SpringMassSystem system) {
+  std::vector<int> of_object;
+  std::vector<double> axial;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    if (system.IsControllerSpring(e)) continue;
+    of_object.push_back(e);
+    axial.push_back(system.stiffness[e] * system.rest_length[e]);
+  }
+  if (axial.empty()) return system;
+  const auto middle = axial.begin() + static_cast<std::ptrdiff_t>(axial.size() / 2);
+  std::nth_element(axial.begin(), middle, axial.end());
+  for (int e : of_object) system.stiffness[e] = *middle / system.rest_length[e];
+  return system;
 }
 
 class Refinement {
@@ -40,7 +75,10 @@ class Refinement {
   }
 
   void LeaveOutSprings(const Work& work);
-  bool ShortenSubsteps(const Work& work);  // whether it did
+  void ShortenSubsteps(const Work& work);
+  void StartAnew(const Work& work);
+  void SettleWidths(const Work& work);
+  bool LeavesNoise() const { return best_.correlation < kNoiseCorrelation; }
   const SmoothlyChosen& Best() const { return best_; }
 
  private:
@@ -49,6 +87,12 @@ class Refinement {
   }
   double ErrorOf(const SmoothlyFitted& fit) const {
     return GeometricTrackError(fit.System(), episodes_, FrameUse::kFit, FreeMotion());
+  }
+  SmoothlyFitted ToTheEnd(const SmoothlyFitted& start, const Work& work) const {
+    return FitToTheEnd(start, best_.model, episodes_, options_, work);
+  }
+  static Work Round(const Work& work, int round) {
+    return work.Stretch(fmt::format("round {}", round), 0, 1);
   }
   void Take(const SmoothlyFitted& fit) {
     best_.fit = fit;
@@ -66,34 +110,58 @@ void Refinement::LeaveOutSprings(const Work& work) {
   for (int round = 0; round < kMostRounds; ++round) {
     const auto start = WithoutSuperfluousSprings(best_.fit, recording_, *best_.model.body.kind);
     if (!start) return;
-    const SmoothlyFitted sparse = FitToTheEnd(*start, best_.model, episodes_, options_,
-                                              work.Stretch(fmt::format("round {}", round), 0, 1));
+    const SmoothlyFitted sparse = ToTheEnd(*start, Round(work, round));
     if (ErrorOf(sparse) > (1 + kMostLoss) * ErrorOf(best_.fit)) return;
     Take(sparse);
   }
 }
 
-bool Refinement::ShortenSubsteps(const Work& work) {
-  const bool open = options_.substeps == 0 && HaveOneFrameRate(episodes_);
-  if (!open || best_.correlation >= kNoiseCorrelation) return false;
-  const double coarse_error = ErrorOf(best_.fit);
+void Refinement::ShortenSubsteps(const Work& work) {
+  if (options_.substeps != 0 || !HaveOneFrameRate(episodes_)) return;
   const int stable =
       StableSubsteps(ComputeStabilityBound(best_.fit.System()), 1 / recording_.fps, kStepSafety);
   const int most = static_cast<int>(MostRate(options_, recording_) / recording_.fps);
-  const int finer = std::min(static_cast<int>(kFiner * stable), most);
-  if (finer < kLeastFiner * stable) return false;
+  const bool limited = best_.fit.body.IsLimited(best_.fit.x);
+  const int finer = limited ? most : std::min(static_cast<int>(kFiner * stable), most);
+  if (finer < kLeastFiner * stable) return;
+  const double coarse_error = ErrorOf(best_.fit);
   SmoothBody::Options freer = best_.fit.body.options();
   freer.most_rate = finer * recording_.fps;
   const SmoothBody body(best_.fit.body.factors().base(), recording_, *best_.model.body.kind, freer);
   options_.substeps = finer;
-  const SmoothlyFitted fit =
-      FitToTheEnd({body, best_.fit.x}, best_.model, episodes_, options_, work);
-  if (ErrorOf(fit) >= (1 - kLeastGain) * coarse_error) {
+  const SmoothlyFitted fit = ToTheEnd({body, best_.fit.x}, work);
+  const double gain =
+      MeasuredCoordinates(episodes_) * (1 - std::pow(ErrorOf(fit) / coarse_error, 2));
+  if (gain < kLeastGain) {
     options_.substeps = best_.substeps;
-    return false;
+    return;
   }
   Take(fit);
-  return true;
+}
+
+void Refinement::StartAnew(const Work& work) {
+  SmoothlyFitted start = best_.fit;
+  SmoothBody::Widths widths;
+  widths.classes = kAlikeClasses;
+  start.body.SetWidths(widths);
+  start.x = start.body.NumbersLike(Uniform(best_.fit.System()), best_.fit.x);
+  start = FitRoughly(start, kGainsOfStart, best_.model, episodes_, options_,
+                     work.Stretch("rough", 0, 0.3));
+  const SmoothlyFitted fit = ToTheEnd(start, work.Stretch("end", 0.3, 1));
+  if (ErrorOf(fit) <= (1 + kMostLossOfStart) * ErrorOf(best_.fit)) Take(fit);
+}
+
+void Refinement::SettleWidths(const Work& work) {
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto linearised = LineariseFit(best_.fit, best_.model, episodes_, options_);
+    if (!linearised) return;
+    SmoothlyFitted start = best_.fit;
+    start.body.SetWidths(MostProbableWidths(best_.fit, *linearised));
+    if (start.body.options().widths == best_.fit.body.options().widths) return;
+    const SmoothlyFitted fit = ToTheEnd(start, Round(work, round));
+    if (ErrorOf(fit) > (1 + kMostLoss) * ErrorOf(best_.fit)) return;
+    Take(fit);
+  }
 }
 
 }  // namespace
@@ -102,9 +170,11 @@ SmoothlyChosen Refine(const SmoothlyChosen& chosen, const std::vector<Episode>& 
                       const TrainOptions& options, const Work& work) {
   Refinement refinement(chosen, episodes, options);
   refinement.LeaveOutSprings(work.Part("superfluous springs", 0, kSparseDone));
-  if (refinement.ShortenSubsteps(work.Part("shorter sub-steps", kSparseDone, kFinerDone))) {
-    refinement.LeaveOutSprings(work.Part("superfluous springs again", kFinerDone, 1));
-  }
+  if (!refinement.LeavesNoise()) return refinement.Best();
+  refinement.ShortenSubsteps(work.Part("shorter sub-steps", kSparseDone, kFinerDone));
+  refinement.StartAnew(work.Part("a uniform start", kFinerDone, kStartDone));
+  refinement.LeaveOutSprings(work.Part("superfluous springs again", kStartDone, kSparseAgain));
+  refinement.SettleWidths(work.Part("widths of priors", kSparseAgain, 1));
   return refinement.Best();
 }
 

@@ -53,7 +53,8 @@ TEST(SmoothBody, HoldsRoughModesSmallerUnlessTheyAreFew) {
     const SmoothBody body(rope.start, rope.recording, SpringNet(),
                           {.most_rate = kMostRate, .numbers = numbers});
     const Eigen::MatrixXd precision = body.Precision(Eigen::VectorXd::Zero(body.size()));
-    const int first = body.factors().first_mode();
+    // a rope has one even slope
+    const int first = body.factors().first_mode() + (few ? 0 : 1);
     const Eigen::VectorXd roughness = SpringModes(rope.start, 6).roughness;
     for (int m = 0; m < 6; ++m) {
       ASSERT_EQ(body.factors().kind(first + m), Parameters::Kind::kMode);
@@ -63,6 +64,38 @@ TEST(SmoothBody, HoldsRoughModesSmallerUnlessTheyAreFew) {
     }
     EXPECT_GT(roughness[5], 10);
   }
+}
+
+// Each width is the deviation of what it names, and of nothing else.
+TEST(SmoothBody, IsHeldByItsWidths) {
+  const Rope rope(1000);
+  SmoothBody body = rope.Body(true);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(body.size());
+  const int classes = body.factors().first_class(), modes = body.factors().first_mode();
+  const int hands = classes + body.factors().classes().lengths;
+  const SmoothBody::Widths wide;
+  const auto change = [&](const SmoothBody::Widths& widths) {
+    body.SetWidths(wide);
+    const Eigen::MatrixXd before = body.Precision(zero);
+    body.SetWidths(widths);
+    return Eigen::MatrixXd(body.Precision(zero) - before);
+  };
+  const Eigen::MatrixXd field = change({wide.field / 2, wide.classes, wide.hands});
+  EXPECT_EQ(field.topLeftCorner(modes + 1, modes + 1).norm(), 0);  // an even slope is not rough
+  EXPECT_NEAR(field(modes + 1, modes + 1), 3 * std::pow(wide.field, -2), 1e-9);
+
+  const Eigen::MatrixXd of_class = change({wide.field, 0.1, wide.hands});
+  EXPECT_NEAR(of_class(classes, classes), 100 - std::pow(wide.classes, -2), 1e-9);
+  EXPECT_EQ(of_class.bottomRightCorner(body.size() - hands, body.size() - hands).norm(), 0);
+
+  // what controllers' springs share with the object's is held together: it costs nothing to move
+  const Eigen::MatrixXd of_hands = change({wide.field, wide.classes, 0.1});
+  Eigen::VectorXd together = zero, apart = zero;
+  together.head(4).setConstant(0.2);
+  apart[1] = 0.2;
+  EXPECT_NEAR(together.dot(of_hands * together), 0, 1e-9);
+  EXPECT_NEAR(apart.dot(of_hands * apart), 4, 1e-9);
+  EXPECT_NEAR(of_hands(hands, hands), 100, 1e-9);
 }
 
 // At 60 frames a second 2,500 is no whole number of sub-steps a frame.

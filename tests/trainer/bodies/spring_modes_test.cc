@@ -62,5 +62,28 @@ TEST(SpringModes, OfSeveralObjectsVaryWithinThem) {
   }
 }
 
+TEST(EvenSlopes, RiseAlongAChain) {
+  const Eigen::MatrixXd slopes = EvenSlopes(Chains(1, 20));
+  ASSERT_EQ(slopes.cols(), 1);
+  const Eigen::VectorXd slope = slopes.col(0);
+  EXPECT_NEAR(slope.squaredNorm() / slope.size(), 1, 1e-9);
+  EXPECT_NEAR(slope.sum(), 0, 1e-9);
+  EXPECT_GT(slope[0], 0);
+  for (int e = 1; e < slope.size(); ++e) {
+    EXPECT_NEAR(slope[e] - slope[e - 1], slope[1] - slope[0], 1e-9) << e;
+  }
+}
+
+// Chains beside each other spread along x and y; only where they are long, y is no long direction.
+TEST(EvenSlopes, AreAsManyAsLongDirections) {
+  const auto count = [](double spacing) {
+    SpringMassSystem chains = Chains(4, 20);
+    chains.position.row(1) *= spacing;
+    return EvenSlopes(chains).cols();
+  };
+  EXPECT_EQ(count(0.04), 2);
+  EXPECT_EQ(count(0.003), 1);
+}
+
 }  // namespace
 }  // namespace physpring
