@@ -28,7 +28,6 @@ constexpr int kMostRounds = 3;                   // of each refinement
 // A new start may fit worse by this part: its body is the simpler one. Its prior holds classes as
 // near to the law of all springs as this.
 constexpr double kMostLossOfStart = 0.005, kAlikeClasses = 0.12;
-const std::vector<double> kGainsOfStart = {0.2, 0.1};  // of the observer
 // Parts of the work.
 constexpr double kSparseDone = 0.3, kFinerDone = 0.6, kStartDone = 0.8, kSparseAgain = 0.85;
 
@@ -145,7 +144,7 @@ void Refinement::StartAnew(const Work& work) {
   widths.classes = kAlikeClasses;
   start.body.SetWidths(widths);
   start.x = start.body.NumbersLike(Uniform(best_.fit.System()), best_.fit.x);
-  start = FitRoughly(start, kGainsOfStart, best_.model, episodes_, options_,
+  start = FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
                      work.Stretch("rough", 0, 0.3));
   const SmoothlyFitted fit = ToTheEnd(start, work.Stretch("end", 0.3, 1));
   if (ErrorOf(fit) <= (1 + kMostLossOfStart) * ErrorOf(best_.fit)) Take(fit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a smooth body still gains from once it is found. Its fit may be in a side valley, its springs
-// are not all those of the object, and its prior is as wide as it was before anything was known.
+// What a smooth body still gains from once it is found. Its fit may be in a side valley, its
+// springs are not all those of the object, and its prior is as wide as it was before anything was
+// known.
 #ifndef PHYSPRING_TRAINER_FITS_SMOOTH_REFINEMENT_H_
 #define PHYSPRING_TRAINER_FITS_SMOOTH_REFINEMENT_H_
 
