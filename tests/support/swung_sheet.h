@@ -17,8 +17,8 @@ inline Recording SwungSheet(int frames) {
   constexpr int kParticles = kSheetColumns * kSheetRows;
   Recording recording = SwungRope(kParticles, frames);
   for (int i = 0; i < kParticles; ++i) {
-    recording.start.col(i) =
-        kSheetSpacing * Eigen::Vector3d(i % kSheetColumns, 0, -(i / kSheetColumns));
+    const int row = i / kSheetColumns;
+    recording.start.col(i) = kSheetSpacing * Eigen::Vector3d(i % kSheetColumns, 0, -row);
   }
   recording.start.col(kParticles) = Eigen::Vector3d(0, 0, kSheetSpacing);
   recording.rest = recording.start;
