@@ -18,6 +18,14 @@ std::vector<int> ChosenLevels(const Twin& twin, const ExportOptions& options) {
   return levels;
 }
 
+// MuJoCo's contacts of so little damping bounce more than once where the learned law bounces once.
+constexpr double kMostRestitution = 0.85;
+
+bool BouncesOtherwise(const LevelPlan& plan) {
+  return plan.contact == ContactKind::kMujoco &&
+         plan.system().contact.surface.restitution > kMostRestitution;
+}
+
 }  // namespace
 
 Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::string& command) {
@@ -41,6 +49,12 @@ Export ExportTwin(const Twin& twin, const ExportOptions& options, const std::str
         fmt::format("the twin does not say what ground it was trained with (a file of an older "
                     "program): the scenes get the floor {}; train it again to know",
                     DescribeGround(GroundOf(result.levels[0].plan))));
+  }
+  if (BouncesOtherwise(result.levels[0].plan)) {
+    result.warnings.push_back(fmt::format(
+        "it bounces (restitution {:.2f}), and MuJoCo's contacts follow that badly: with the "
+        "plugin's (--contact plugin or --springs plugin) it touches as it was trained",
+        result.levels[0].plan.system().contact.surface.restitution));
   }
   result.files["README.md"] = FormatReadme(result.levels, command);
   return result;

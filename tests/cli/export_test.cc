@@ -44,6 +44,20 @@ TEST_F(Export, WritesAFolderAndTellsWhatIsInIt) {
   EXPECT_NE(readme.find("physpring export block.twin.npz -o out\n"), std::string::npos) << readme;
 }
 
+TEST_F(Export, TellsWhereMujocosContactsFollowBadly) {
+  for (double restitution : {0.5, 0.95}) {
+    Twin twin = SmallTwin(1);
+    twin.levels[0].system.contact.surface.restitution = restitution;
+    WriteTwin(twin, TwinPath());
+    for (const char* contact : {"mujoco", "plugin"}) {
+      const ProgramResult result = Run({"--contact", contact, "--force"});
+      ASSERT_EQ(result.status, 0) << result.errors;
+      const bool told = result.errors.find("it bounces (restitution 0.95)") != std::string::npos;
+      EXPECT_EQ(told, restitution == 0.95 && contact == std::string("mujoco")) << result.errors;
+    }
+  }
+}
+
 TEST_F(Export, OneLevelHasTheScene) {
   EXPECT_EQ(Run({"--level", "1", "--springs", "flex", "--flexes", "2"}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(Folder() + "/level0.xml"));
