@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "trainer/bodies/factors.h"
@@ -12,6 +13,7 @@
 #include "trainer/fits/superfluous_springs.h"
 #include "trainer/motion/residual_correlation.h"
 #include "trainer/motion/track_error.h"
+#include "twin/checks/motion_scale.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -55,10 +57,8 @@ SpringMassSystem Uniform(SpringMassSystem system) {
     of_object.push_back(e);
     axial.push_back(system.stiffness[e] * system.rest_length[e]);
   }
-  if (axial.empty()) return system;
-  const auto middle = axial.begin() + static_cast<std::ptrdiff_t>(axial.size() / 2);
-  std::nth_element(axial.begin(), middle, axial.end());
-  for (int e : of_object) system.stiffness[e] = *middle / system.rest_length[e];
+  const double median = Median(std::move(axial));
+  for (int e : of_object) system.stiffness[e] = median / system.rest_length[e];
   return system;
 }
 
@@ -71,6 +71,7 @@ class Refinement {
         episodes_(episodes),
         options_(options) {
     options_.substeps = chosen.substeps;
+    best_error_ = ErrorOf(best_.fit);
   }
 
   void LeaveOutSprings(const Work& work);
@@ -93,13 +94,15 @@ class Refinement {
   static Work Round(const Work& work, int round) {
     return work.Stretch(fmt::format("round {}", round), 0, 1);
   }
-  void Take(const SmoothlyFitted& fit) {
+  void Take(const SmoothlyFitted& fit, double error) {
     best_.fit = fit;
     best_.correlation = ResidualCorrelation(fit.System(), episodes_, FreeMotion());
     best_.substeps = options_.substeps;
+    best_error_ = error;
   }
 
   SmoothlyChosen best_;
+  double best_error_ = 0;  // m
   Recording recording_;
   const std::vector<Episode>& episodes_;
   TrainOptions options_;  // with the sub-steps of the best one
@@ -110,8 +113,9 @@ void Refinement::LeaveOutSprings(const Work& work) {
     const auto start = WithoutSuperfluousSprings(best_.fit, recording_, *best_.model.body.kind);
     if (!start) return;
     const SmoothlyFitted sparse = ToTheEnd(*start, Round(work, round));
-    if (ErrorOf(sparse) > (1 + kMostLoss) * ErrorOf(best_.fit)) return;
-    Take(sparse);
+    const double error = ErrorOf(sparse);
+    if (error > (1 + kMostLoss) * best_error_) return;
+    Take(sparse, error);
   }
 }
 
@@ -123,19 +127,18 @@ void Refinement::ShortenSubsteps(const Work& work) {
   const bool limited = best_.fit.body.IsLimited(best_.fit.x);
   const int finer = limited ? most : std::min(static_cast<int>(kFiner * stable), most);
   if (finer < kLeastFiner * stable) return;
-  const double coarse_error = ErrorOf(best_.fit);
   SmoothBody::Options freer = best_.fit.body.options();
   freer.most_rate = finer * recording_.fps;
   const SmoothBody body(best_.fit.body.factors().base(), recording_, *best_.model.body.kind, freer);
   options_.substeps = finer;
   const SmoothlyFitted fit = ToTheEnd({body, best_.fit.x}, work);
-  const double gain =
-      MeasuredCoordinates(episodes_) * (1 - std::pow(ErrorOf(fit) / coarse_error, 2));
+  const double error = ErrorOf(fit);
+  const double gain = MeasuredCoordinates(episodes_) * (1 - std::pow(error / best_error_, 2));
   if (gain < kLeastGain) {
     options_.substeps = best_.substeps;
     return;
   }
-  Take(fit);
+  Take(fit, error);
 }
 
 void Refinement::StartAnew(const Work& work) {
@@ -147,7 +150,8 @@ void Refinement::StartAnew(const Work& work) {
   start = FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
                      work.Stretch("rough", 0, 0.3));
   const SmoothlyFitted fit = ToTheEnd(start, work.Stretch("end", 0.3, 1));
-  if (ErrorOf(fit) <= (1 + kMostLossOfStart) * ErrorOf(best_.fit)) Take(fit);
+  const double error = ErrorOf(fit);
+  if (error <= (1 + kMostLossOfStart) * best_error_) Take(fit, error);
 }
 
 void Refinement::SettleWidths(const Work& work) {
@@ -158,8 +162,9 @@ void Refinement::SettleWidths(const Work& work) {
     start.body.SetWidths(MostProbableWidths(best_.fit, *linearised));
     if (start.body.options().widths == best_.fit.body.options().widths) return;
     const SmoothlyFitted fit = ToTheEnd(start, Round(work, round));
-    if (ErrorOf(fit) > (1 + kMostLoss) * ErrorOf(best_.fit)) return;
-    Take(fit);
+    const double error = ErrorOf(fit);
+    if (error > (1 + kMostLoss) * best_error_) return;
+    Take(fit, error);
   }
 }
 
