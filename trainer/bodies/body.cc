@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "trainer/bodies/hanging_net.h"
+#include "trainer/bodies/spring_radius.h"
 #include "trainer/bodies/start_system.h"
 #include "twin/stability.h"
 
@@ -21,6 +22,19 @@ std::string Body::Label() const {
   return fmt::format("{} neighbours{}{}{}", neighbours, kind->Addition(),
                      controller_velocity ? "" : ", controllers without velocity",
                      cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
+}
+
+Body WithSoftSprings(const Body& body, const Recording& recording) {
+  constexpr double kMore = 1.55;
+  const Points particles = recording.rest.leftCols(recording.particle_count());
+  const int count =
+      std::min(static_cast<int>(kMore * body.neighbours), static_cast<int>(particles.cols()) - 1);
+  const bool hangs = body.strain.size() > 0;  // its strains are of its own springs
+  if (body.radius == 0 || hangs || count <= body.neighbours) return body;
+  Body more = body;
+  more.radius = std::max(body.radius, SpringRadius(particles, count));
+  more.soft_beyond = body.radius;
+  return more;
 }
 
 SpringMassSystem StartSystem(const Recording& recording, const Body& body, double start_substeps) {

@@ -10,6 +10,7 @@
 #ifndef PHYSPRING_TRAINER_BODIES_BODY_H_
 #define PHYSPRING_TRAINER_BODIES_BODY_H_
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ class BodyKind {
 };
 
 struct Body {
+  static constexpr double kNowhere = std::numeric_limits<double>::infinity();
   const BodyKind* kind;
   int neighbours = 0;  // about so many springs join an inner particle to others
   double radius = 0;   // m, the search radius that gives so many (not used along rods)
@@ -48,14 +50,20 @@ struct Body {
   FrictionCone cone = FrictionCone::kElliptic;
   std::vector<EffectValues> effects = {};  // the known ones, then the kind's own
   Eigen::VectorXd mass = {};               // each particle's mass, kg; empty: all alike
-  Eigen::VectorXd strain = {};  // (springs) shares of the strain in frame 0; empty: stress-free
-  double stretch = 0;           // the largest strain in frame 0
+  Eigen::VectorXd strain = {};    // (springs) shares of the strain in frame 0; empty: stress-free
+  double stretch = 0;             // the largest strain in frame 0
+  double soft_beyond = kNowhere;  // m: springs that are longer begin soft in a smooth body
 
   std::string Label() const;
 };
 
 // The softest and the stiffest start system that a fit tries, in sub-steps a frame.
 constexpr double kSoftestStart = 2, kStiffestStart = 64;
+
+// The body with springs to half as many neighbours more, which begin soft. In an irregular mesh
+// there is no gap between shells: a radius that leaves out true springs is not told from others,
+// and without them no fit arrives. Nothing changes along a rod or in a net that hangs.
+Body WithSoftSprings(const Body& body, const Recording& recording);
 
 // The system that a fit of `body` starts from. It is over-damped, and as soft as `start_substeps`
 // sub-steps a frame allow. Throws Error where the recording gives no body.

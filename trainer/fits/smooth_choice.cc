@@ -88,12 +88,17 @@ class SmoothChoice {
         options_(options),
         few_(few),
         work_(work),
-        most_rate_(MostRate(options, recording_)) {}
+        most_rate_(MostRate(options, recording_)) {
+    if (!few && IsIrregular()) model_.body = WithSoftSprings(model_.body, recording_);
+  }
 
   SmoothlyChosen Run();
 
  private:
   bool HasHands() const { return recording_.controller_count() > 0; }
+  bool IsIrregular() const {
+    return StartOf(model_, {most_rate_}).body.factors().classes().irregular;
+  }
   SmoothlyFitted StartOf(const ChosenBody& model, const SmoothBody::Options& body) const {
     return SoftSmoothBody(model, first_, body, body.most_rate > kSlowRate ? kLossier : 1);
   }

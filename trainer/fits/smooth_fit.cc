@@ -18,7 +18,7 @@ constexpr double kSmoothDamping = 1e-2;               // the damping with which 
 // A stage of a fit: under an observer of this gain, and how far down.
 struct Stage {
   enum class Depth {
-    kRough,  // in floats, and not to the end
+    kRough,  // not to the end; under an observer in floats
     kEnd,
     kBottom  // in doubles, with derivatives that are exact enough for the last steps
   };
@@ -48,6 +48,18 @@ SpringMassSystem StartOf(const ChosenBody& chosen, const Recording& recording) {
   return start;
 }
 
+// Numbers of a body whose springs that are longer are soft, by whole classes of length.
+Eigen::VectorXd SoftBeyond(double length, const SmoothBody& body) {
+  constexpr double kSoft = -4;  // a logarithm: two deviations of the prior
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(body.size());
+  const Parameters& factors = body.factors();
+  for (int e = 0; e < factors.base().spring_count(); ++e) {
+    if (factors.base().rest_length[e] <= length) continue;
+    x[factors.first_class() + factors.classes().of_spring[static_cast<std::size_t>(e)]] = kSoft;
+  }
+  return x;
+}
+
 // What is fitted, and to what.
 class SmoothFit {
  public:
@@ -65,6 +77,11 @@ class SmoothFit {
 
  private:
   MotionProblem::Options Follow(const Stage& stage) const;
+  // Whether derivatives are exact. Under an observer they need not be; nor, then, is what it shows.
+  bool IsExact(const Stage& stage) const {
+    return stage.depth == Stage::Depth::kBottom ||
+           (stage.depth == Stage::Depth::kRough && stage.gain == 0 && !recording_.ground);
+  }
 
   const SmoothBody& body_;
   const ChosenBody& chosen_;
@@ -79,14 +96,14 @@ MotionProblem::Options SmoothFit::Follow(const Stage& stage) const {
   follow.threads = 1;  // the differences run in parallel
   follow.rollout.observer_gain = stage.gain;
   if (stage.depth == Stage::Depth::kRough) follow.rollout.single_precision = true;
-  if (stage.depth == Stage::Depth::kBottom) follow.rollout.single_precision = false;
+  if (IsExact(stage)) follow.rollout.single_precision = false;
   follow.most_rate = body_.most_rate();
   return follow;
 }
 
-// The step of differences at the bottom. Near it, the error of a long one is as large as the slope
+// The step of exact differences. Near the bottom, the error of a long one is as large as the slope
 // itself, and the fit would stop above. Contacts make residuals jump, and want a long one still.
-double BottomDifference(const Recording& recording) {
+double ExactDifference(const Recording& recording) {
   constexpr double kExact = 1e-5;
   return recording.ground ? FactorDifference(recording) : kExact;
 }
@@ -127,7 +144,7 @@ StepReport SmoothFit::Step(SmoothState* state) const {
   fit.converged = true;
   if (nearby.FixSubsteps(fit.x)) {
     LevenbergMarquardtOptions levenberg = chosen_.body.kind->FactorOptions(recording_);
-    if (bottom) levenberg.difference = BottomDifference(recording_);
+    if (IsExact(stage)) levenberg.difference = ExactDifference(recording_);
     levenberg.precisions = body_.Precision(fit.x);
     levenberg.tolerance = ToleranceFor(stage, problem.residual_count());
     levenberg.updates = kUpdates;
@@ -162,7 +179,7 @@ std::optional<LinearisedFit> SmoothFit::LineariseAt(const Eigen::VectorXd& x) co
   if (!nearby.FixSubsteps(x)) return {};
   std::optional<Eigen::VectorXd> residuals = nearby.Residuals(x);
   if (!residuals) return {};
-  const Differences differences{0, body_.size(), BottomDifference(recording_), options_.threads};
+  const Differences differences{0, body_.size(), ExactDifference(recording_), options_.threads};
   Eigen::MatrixXd slope = DifferenceColumns(ResidualsOf(nearby), x, *residuals, differences);
   return LinearisedFit{std::move(*residuals), std::move(slope)};
 }
@@ -183,7 +200,7 @@ SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episod
   SpringMassSystem start = StartOf(chosen, recording);
   start.dashpot *= lossier;
   const SmoothBody smooth(start, recording, *chosen.body.kind, body);
-  return {smooth, Eigen::VectorXd::Zero(smooth.size())};
+  return {smooth, SoftBeyond(chosen.body.soft_beyond, smooth)};
 }
 
 SmoothlyFitted FitRoughly(const SmoothlyFitted& start, const std::vector<double>& gains,

@@ -58,5 +58,49 @@ TEST(FitToTheEnd, EndsAtTheBottom) {
   }
 }
 
+// A net in an irregular mesh gets springs beyond its radius, and they alone begin soft (by whole
+// classes of length: a few shorter ones may, too).
+TEST(SoftSmoothBody, SpringsBeyondTheChosenRadiusBeginSoft) {
+  Recording recording = SwungSheet(10);
+  for (int i = 0; i < recording.particle_count(); ++i) {
+    recording.rest.col(i) +=
+        0.3 * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
+  }
+  FitData data;
+  data.recordings.push_back(std::move(recording));
+  data.continuous_recording.push_back(0);
+  const Recording& measured = data.recordings[0];
+  TrainOptions options;
+  options.neighbours = {12};
+  const Body chosen = CandidateBodies(measured, options)[0];
+  ChosenBody model{WithSoftSprings(chosen, measured), 8, {}, {}};
+  ASSERT_GT(model.body.radius, 1.05 * chosen.radius);
+  model.factors = Eigen::VectorXd::Zero(model.ParametersOf(measured).size());
+  const SpringMassSystem system =
+      SoftSmoothBody(model, FitEpisodes(data, 1), {.most_rate = 1e5}).System();
+  const Eigen::VectorXd axial = system.stiffness.cwiseProduct(system.rest_length);
+  int beyond = 0, within = 0, soft_within = 0;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    const bool soft = axial[e] < 0.02 * axial.maxCoeff();
+    if (system.rest_length[e] > chosen.radius) {
+      EXPECT_TRUE(soft);
+      ++beyond;
+    } else {
+      ++within;
+      if (soft) ++soft_within;
+    }
+  }
+  EXPECT_GT(beyond, 20);
+  EXPECT_LT(soft_within, 0.1 * within);
+}
+
+TEST(WithSoftSprings, ChangesNoRodAndNoBodyOfFewParticles) {
+  const Recording recording = SwungSheet(2);
+  const Body rod{.kind = nullptr, .neighbours = 8};
+  EXPECT_EQ(WithSoftSprings(rod, recording).soft_beyond, Body::kNowhere);
+  const Body whole{.kind = nullptr, .neighbours = recording.particle_count() - 1, .radius = 1};
+  EXPECT_EQ(WithSoftSprings(whole, recording).radius, 1);
+}
+
 }  // namespace
 }  // namespace physpring
