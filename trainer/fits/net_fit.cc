@@ -98,9 +98,7 @@ SmoothlyChosen NetFit::FitSmooth() {
   SmoothlyChosen smooth = ChooseSmoothBody(model_, episodes, options_, HasManyParticles(data_),
                                            work_.Stretch("smooth", 0, kSmoothPart));
   smooth = Refine(smooth, episodes, options_, work_.Stretch("refined", kSmoothPart, kRefined));
-  const double radius = model_.body.radius;
   model_ = smooth.model;
-  model_.body.radius = radius;  // of single springs
   options_.substeps = smooth.substeps;
   if (ParticleFrames(some, kMostCommonRecordings) < ParticleFrames(data_, kMostCommonRecordings)) {
     smooth.fit = FitToTheEnd(smooth.fit, model_, episodes_, options_,

@@ -76,6 +76,11 @@ bool TellNoise(const std::vector<Episode>& episodes) {
   return points >= kLeastPoints;
 }
 
+// Whether the mesh of a net is irregular (spring_classes.h).
+bool IsIrregular(const ChosenBody& model, const std::vector<Episode>& episodes, double rate) {
+  return SoftSmoothBody(model, episodes, {rate}).body.factors().classes().irregular;
+}
+
 class SmoothChoice {
  public:
   SmoothChoice(const ChosenBody& model, const std::vector<Episode>& episodes,
@@ -88,18 +93,15 @@ class SmoothChoice {
         options_(options),
         few_(few),
         work_(work),
-        most_rate_(MostRate(options, recording_)) {
-    if (!few && IsIrregular()) model_.body = WithSoftSprings(model_.body, recording_);
-  }
+        most_rate_(MostRate(options, recording_)),
+        with_soft_springs_(!few && IsIrregular(model, first_, most_rate_)) {}
 
   SmoothlyChosen Run();
 
  private:
   bool HasHands() const { return recording_.controller_count() > 0; }
-  bool IsIrregular() const {
-    return StartOf(model_, {most_rate_}).body.factors().classes().irregular;
-  }
-  SmoothlyFitted StartOf(const ChosenBody& model, const SmoothBody::Options& body) const {
+  SmoothlyFitted StartOf(ChosenBody model, const SmoothBody::Options& body) const {
+    if (with_soft_springs_) model.body = WithSoftSprings(model.body, recording_);
     return SoftSmoothBody(model, first_, body, body.most_rate > kSlowRate ? kLossier : 1);
   }
   SmoothTrial Judge(const ChosenBody& model, const SmoothlyFitted& fit,
@@ -125,6 +127,7 @@ class SmoothChoice {
   bool few_;
   const Work& work_;
   double most_rate_;                          // sub-steps a second
+  bool with_soft_springs_;                    // beyond the chosen net's radius
   std::optional<SmoothTrial> best_, fitted_;  // roughly, and to the end
   bool is_fitted_ = false;                    // whether best_ has been fitted to the end
 };
