@@ -42,9 +42,21 @@ ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& r
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
   options.class_dashpots = body.class_loss_times;
-  options.classes = {kClassJump, kEqualClasses, body.hands_apart, body.directions};
+  options.classes = {kClassJump, kEqualClasses, body.finer, body.hands_apart, body.directions};
   options.modes = modes;
   return options;
+}
+
+// The mean logarithm of loss times, dashpots over stiffnesses, of springs of controllers or of all
+// others; NaN where there are none.
+double MeanLogLoss(const SpringMassSystem& system, bool hands) {
+  double sum = 0, count = 0;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    if (system.IsControllerSpring(e) != hands) continue;
+    sum += std::log(system.dashpot[e] / system.stiffness[e]);
+    count += 1;
+  }
+  return sum / count;
 }
 
 // The fastest mode's frequency times the sub-step, at most; 2 would leave no room for dashpots.
@@ -122,6 +134,12 @@ Eigen::VectorXd SmoothBody::NumbersLike(const SpringMassSystem& system,
   Eigen::VectorXd like = NearestStiffnesses(system);
   // of the common numbers, the first two are of stiffness, the object's and the hands'
   for (int i = 2; i < factors_.first_class(); ++i) like[i] = x[i];
+  // those of `x` may be longer: where the body is limited, they are not what was simulated
+  const SpringMassSystem now = factors_.Apply(like);
+  for (bool hands : {false, true}) {
+    const double longer = MeanLogLoss(system, hands) - MeanLogLoss(now, hands);
+    if (std::isfinite(longer)) like[hands ? 3 : 2] += longer;
+  }
   return like;
 }
 

@@ -34,7 +34,8 @@ class SmoothBody {
     bool hands_apart = false;  // springs of controllers are in classes apart (spring_classes.h)
     bool directions = false;   // so are springs of other directions
     Numbers numbers = Numbers::kAll;
-    bool class_loss_times = false;  // each class has a loss time of its own
+    bool class_loss_times = false;         // each class has a loss time of its own
+    SpringClassOptions::Finer finer = {};  // classes of long springs in an irregular mesh
     Widths widths = {};
   };
 
@@ -67,8 +68,9 @@ class SmoothBody {
   // contact; rest lengths of the start.
   SpringMassSystem NearestTo(const SpringMassSystem& system) const;
 
-  // Numbers that make the body's springs most like those of `system`, in the same sense; of its
-  // loss time, drag and contact as in `x`, numbers of a body of this kind of other springs.
+  // Numbers that make the body's springs most like those of `system`, in the same sense, and their
+  // loss times as long; else, as drag and contact, those of `x`, of a body of this kind of other
+  // springs.
   Eigen::VectorXd NumbersLike(const SpringMassSystem& system, const Eigen::VectorXd& x) const;
 
  private:

@@ -49,6 +49,26 @@ void CutByDirection(const SpringMassSystem& system, const std::vector<int>& sort
   classes->count = classes->lengths = static_cast<int>(first_of.size());
 }
 
+// Cuts these springs, which are in the order of length, into equally filled classes. Returns the
+// last one.
+int CutEqually(const SpringMassSystem& system, const std::vector<int>& sorted,
+               const SpringClassOptions& options, SpringClasses* classes) {
+  const auto longer = std::find_if(sorted.begin(), sorted.end(), [&](int e) {
+    return system.rest_length[e] > options.finer.beyond;
+  });
+  const auto count = static_cast<long>(sorted.size()), coarse = longer - sorted.begin();
+  int last = -1;
+  for (long i = 0, of_last = -1; i < count; ++i) {
+    const bool fine = i >= coarse;
+    const long one =
+        fine ? options.equal + (i - coarse) / options.finer.springs : i * options.equal / count;
+    if (one != of_last) ++last;
+    of_last = one;
+    classes->of_spring[sorted[i]] = last;
+  }
+  return last;
+}
+
 void AddLengths(const SpringMassSystem& system, const std::vector<int>& springs,
                 const SpringClassOptions& options, SpringClasses* classes) {
   const std::vector<int> sorted = SortedByLength(system, springs);
@@ -65,11 +85,7 @@ void AddLengths(const SpringMassSystem& system, const std::vector<int>& springs,
   }
   classes->irregular = last >= kMostLengths || widest > kWidest;
   if (classes->irregular) {
-    const auto count = static_cast<long>(sorted.size());
-    for (long i = 0; i < count; ++i) {
-      last = static_cast<int>(i * options.equal / count);
-      classes->of_spring[sorted[i]] = last;
-    }
+    last = CutEqually(system, sorted, options, classes);
   }
   classes->count = classes->lengths = sorted.empty() ? 0 : last + 1;
   classes->like_the_last.assign(static_cast<std::size_t>(classes->lengths), classes->irregular);

@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_TRAINER_BODIES_SPRING_CLASSES_H_
 #define PHYSPRING_TRAINER_BODIES_SPRING_CLASSES_H_
 
+#include <limits>
 #include <vector>
 
 #include "twin/spring_mass_system.h"
@@ -13,6 +14,12 @@ namespace physpring {
 struct SpringClassOptions {
   double jump = 1.03;  // a class ends where the sorted lengths jump by this factor
   int equal = 6;       // so many, equally filled, where that gives many or wide ones
+  // Of them, springs that are longer are in finer classes, of at most so many.
+  struct Finer {
+    double beyond = std::numeric_limits<double>::infinity();  // m
+    int springs = 0;
+    bool operator==(const Finer&) const = default;
+  } finer = {};
   // Springs of controllers have classes apart from those of length: the nearest springs of all
   // controllers are one, the second nearest ones another, and so on.
   bool hands_apart = false;

@@ -11,9 +11,10 @@
 namespace physpring {
 namespace {
 
-constexpr double kNinetyPercent = 1.645;                // standard deviations, on either side
-constexpr double kMostDeviation = 10;                   // of a logarithm; more says nothing more
-constexpr SpringClassOptions kReported{1.01, 6, true};  // the classes that are reported
+constexpr double kNinetyPercent = 1.645;  // standard deviations, on either side
+constexpr double kMostDeviation = 10;     // of a logarithm; more says nothing more
+// the classes that are reported
+constexpr SpringClassOptions kReported{.jump = 1.01, .equal = 6, .hands_apart = true};
 
 using Springs = std::vector<int>;
 using LogValue = std::function<double(const SpringMassSystem&)>;

@@ -77,10 +77,10 @@ class SmoothFit {
 
  private:
   MotionProblem::Options Follow(const Stage& stage) const;
-  // Whether derivatives are exact. Under an observer they need not be; nor, then, is what it shows.
+  // Whether derivatives are exact. Under an observer they need not be. Over a ground they are only
+  // at the bottom.
   bool IsExact(const Stage& stage) const {
-    return stage.depth == Stage::Depth::kBottom ||
-           (stage.depth == Stage::Depth::kRough && stage.gain == 0 && !recording_.ground);
+    return stage.depth == Stage::Depth::kBottom || (stage.gain == 0 && !recording_.ground);
   }
 
   const SmoothBody& body_;

@@ -23,15 +23,18 @@ namespace {
 // motion, too.
 constexpr double kMostLoss = 0.02;
 // Shorter sub-steps must lower the misfit by so much, in variances of the noise. One more number of
-// a body lowers it by about 1 (Wilks, Annals of Mathematical Statistics 9, 1938).
-constexpr double kLeastGain = 20;
-constexpr double kFiner = 3, kLeastFiner = 1.5;  // times the sub-steps
-constexpr int kMostRounds = 3;                   // of each refinement
+// a body lowers it by about 1 (Wilks, Annals of Mathematical Statistics 9, 1938). Single springs
+// fewer may raise it by that much.
+constexpr double kLeastGainOfSteps = 5, kMostRiseOfSprings = 20;
+constexpr double kFiner = 3, kLeastFiner = 1.1;  // times the sub-steps
+constexpr int kMostRounds = 6;                   // of each refinement
 // A new start may fit worse by this part: its body is the simpler one. Its prior holds classes as
 // near to the law of all springs as this.
+constexpr double kNearby = 1.05;  // times the best error
 constexpr double kMostLossOfStart = 0.005, kAlikeClasses = 0.12;
 // Parts of the work.
-constexpr double kSparseDone = 0.3, kFinerDone = 0.6, kStartDone = 0.8, kSparseAgain = 0.85;
+constexpr double kSparseDone = 0.3, kFinerDone = 0.6, kStartDone = 0.8, kSparseAgain = 0.85,
+                 kFinerAgain = 0.92;
 
 // Whether a number of sub-steps a frame is the same time step in all of them.
 bool HaveOneFrameRate(const std::vector<Episode>& episodes) {
@@ -48,7 +51,8 @@ double MeasuredCoordinates(const std::vector<Episode>& episodes) {
   return count;
 }
 
-// The same stiffness times length, the median of all, for all springs of the object.
+// The same stiffness times length, the median of all, for all springs of the object, and one loss
+// time for all.
 SpringMassSystem Uniform(SpringMassSystem system) {
   std::vector<int> of_object;
   std::vector<double> axial;
@@ -58,7 +62,9 @@ SpringMassSystem Uniform(SpringMassSystem system) {
     axial.push_back(system.stiffness[e] * system.rest_length[e]);
   }
   const double median = Median(std::move(axial));
+  const double loss_time = system.dashpot.sum() / system.stiffness.sum();
   for (int e : of_object) system.stiffness[e] = median / system.rest_length[e];
+  system.dashpot = loss_time * system.stiffness;
   return system;
 }
 
@@ -88,8 +94,21 @@ class Refinement {
   double ErrorOf(const SmoothlyFitted& fit) const {
     return GeometricTrackError(fit.System(), episodes_, FrameUse::kFit, FreeMotion());
   }
+  // By how much a fit of this error lowers the misfit, in variances of the noise.
+  double Gain(double error) const {
+    return MeasuredCoordinates(episodes_) * (1 - std::pow(error / best_error_, 2));
+  }
   SmoothlyFitted ToTheEnd(const SmoothlyFitted& start, const Work& work) const {
     return FitToTheEnd(start, best_.model, episodes_, options_, work);
+  }
+  // Led back to the motion first, where the start is so far from it that it would be lost.
+  SmoothlyFitted NotLost(const SmoothlyFitted& start, const Work& work) const {
+    if (ErrorOf(start) <= kNearby * best_error_) return ToTheEnd(start, work);
+    return ToTheEnd(Guided(start, work), work.Stretch("end", 0.3, 1));
+  }
+  SmoothlyFitted Guided(const SmoothlyFitted& start, const Work& work) const {
+    return FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
+                      work.Stretch("rough", 0, 0.3));
   }
   static Work Round(const Work& work, int round) {
     return work.Stretch(fmt::format("round {}", round), 0, 1);
@@ -112,33 +131,37 @@ void Refinement::LeaveOutSprings(const Work& work) {
   for (int round = 0; round < kMostRounds; ++round) {
     const auto start = WithoutSuperfluousSprings(best_.fit, recording_, *best_.model.body.kind);
     if (!start) return;
-    const SmoothlyFitted sparse = ToTheEnd(*start, Round(work, round));
+    const SmoothlyFitted sparse = NotLost(*start, Round(work, round));
     const double error = ErrorOf(sparse);
-    if (error > (1 + kMostLoss) * best_error_) return;
+    const bool single = best_.fit.body.options().finer.springs == 1;
+    if (single ? Gain(error) < -kMostRiseOfSprings : error > (1 + kMostLoss) * best_error_) return;
     Take(sparse, error);
   }
 }
 
 void Refinement::ShortenSubsteps(const Work& work) {
   if (options_.substeps != 0 || !HaveOneFrameRate(episodes_)) return;
-  const int stable =
-      StableSubsteps(ComputeStabilityBound(best_.fit.System()), 1 / recording_.fps, kStepSafety);
   const int most = static_cast<int>(MostRate(options_, recording_) / recording_.fps);
-  const bool limited = best_.fit.body.IsLimited(best_.fit.x);
-  const int finer = limited ? most : std::min(static_cast<int>(kFiner * stable), most);
-  if (finer < kLeastFiner * stable) return;
-  SmoothBody::Options freer = best_.fit.body.options();
-  freer.most_rate = finer * recording_.fps;
-  const SmoothBody body(best_.fit.body.factors().base(), recording_, *best_.model.body.kind, freer);
-  options_.substeps = finer;
-  const SmoothlyFitted fit = ToTheEnd({body, best_.fit.x}, work);
-  const double error = ErrorOf(fit);
-  const double gain = MeasuredCoordinates(episodes_) * (1 - std::pow(error / best_error_, 2));
-  if (gain < kLeastGain) {
-    options_.substeps = best_.substeps;
-    return;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const int stable =
+        StableSubsteps(ComputeStabilityBound(best_.fit.System()), 1 / recording_.fps, kStepSafety);
+    const int now = std::max(stable, best_.substeps);
+    const bool limited = best_.fit.body.IsLimited(best_.fit.x);
+    const int finer = limited ? most : std::min(static_cast<int>(kFiner * now), most);
+    if (finer < kLeastFiner * now) return;
+    SmoothBody::Options freer = best_.fit.body.options();
+    freer.most_rate = finer * recording_.fps;
+    const SmoothBody body(best_.fit.body.factors().base(), recording_, *best_.model.body.kind,
+                          freer);
+    options_.substeps = finer;
+    const SmoothlyFitted fit = ToTheEnd({body, best_.fit.x}, Round(work, round));
+    const double error = ErrorOf(fit);
+    if (Gain(error) < kLeastGainOfSteps) {
+      options_.substeps = best_.substeps;
+      return;
+    }
+    Take(fit, error);
   }
-  Take(fit, error);
 }
 
 void Refinement::StartAnew(const Work& work) {
@@ -147,8 +170,7 @@ void Refinement::StartAnew(const Work& work) {
   widths.classes = kAlikeClasses;
   start.body.SetWidths(widths);
   start.x = start.body.NumbersLike(Uniform(best_.fit.System()), best_.fit.x);
-  start = FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
-                     work.Stretch("rough", 0, 0.3));
+  start = Guided(start, work);
   const SmoothlyFitted fit = ToTheEnd(start, work.Stretch("end", 0.3, 1));
   const double error = ErrorOf(fit);
   if (error <= (1 + kMostLossOfStart) * best_error_) Take(fit, error);
@@ -178,7 +200,8 @@ SmoothlyChosen Refine(const SmoothlyChosen& chosen, const std::vector<Episode>& 
   refinement.ShortenSubsteps(work.Part("shorter sub-steps", kSparseDone, kFinerDone));
   refinement.StartAnew(work.Part("a uniform start", kFinerDone, kStartDone));
   refinement.LeaveOutSprings(work.Part("superfluous springs again", kStartDone, kSparseAgain));
-  refinement.SettleWidths(work.Part("widths of priors", kSparseAgain, 1));
+  refinement.ShortenSubsteps(work.Part("shorter sub-steps again", kSparseAgain, kFinerAgain));
+  refinement.SettleWidths(work.Part("widths of priors", kFinerAgain, 1));
   return refinement.Best();
 }
 

@@ -113,6 +113,24 @@ TEST(SmoothBody, NeverNeedsMoreSubstepsThanItMay) {
   }
 }
 
+// Where the body is limited, dashpots are lowered: numbers like what was simulated have the loss
+// time that it had, also where they are no longer limited.
+TEST(SmoothBody, NumbersLikeASystemHaveItsLossTime) {
+  const Rope rope(2000);
+  const SmoothBody body = rope.Body();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(body.size());
+  x[2] = x[3] = 3;  // of the loss time
+  SpringMassSystem system = body.Apply(x);
+  ASSERT_TRUE(body.IsLimited(x));
+  const double loss_time = system.dashpot[0] / system.stiffness[0];
+  ASSERT_LT(loss_time, 0.5 * body.factors().Apply(x).dashpot[0] / system.stiffness[0]);
+  system.stiffness *= 0.3;
+  system.dashpot *= 0.3;
+  const SpringMassSystem like = body.Apply(body.NumbersLike(system, x));
+  EXPECT_NEAR(like.dashpot[0] / like.stiffness[0] / loss_time, 1, 1e-9);
+  EXPECT_NEAR(like.stiffness.mean() / system.stiffness.mean(), 1, 0.05);
+}
+
 TEST(SmoothBody, HandsApartHaveStiffnessesOfTheirOwn) {
   const Rope rope(1000);
   const SmoothBody body = rope.Body(true);

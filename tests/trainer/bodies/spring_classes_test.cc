@@ -25,7 +25,8 @@ SpringMassSystem Star(const std::vector<double>& lengths,
 }
 
 TEST(SpringClasses, EndWhereLengthsJump) {
-  const SpringClasses classes = ClassesOf(Star({0.02, 0.01, 0.0101, 0.03}, {}), {1.05, 6, true});
+  const SpringClasses classes =
+      ClassesOf(Star({0.02, 0.01, 0.0101, 0.03}, {}), {.jump = 1.05, .hands_apart = true});
   EXPECT_EQ(classes.of_spring, (std::vector<int>{1, 0, 0, 2}));
   EXPECT_EQ(classes.count, 3);
   EXPECT_EQ(classes.lengths, 3);
@@ -35,9 +36,21 @@ TEST(SpringClasses, EndWhereLengthsJump) {
 TEST(SpringClasses, AreEquallyFilledWhereLengthsDoNotJump) {
   std::vector<double> lengths(12);
   for (int i = 0; i < 12; ++i) lengths[i] = 0.01 * std::pow(1.04, i);
-  const SpringClasses classes = ClassesOf(Star(lengths, {}), {1.05, 4, true});
+  const SpringClasses classes =
+      ClassesOf(Star(lengths, {}), {.jump = 1.05, .equal = 4, .hands_apart = true});
   EXPECT_TRUE(classes.irregular);
   EXPECT_EQ(classes.of_spring, (std::vector<int>{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}));
+}
+
+TEST(SpringClasses, LongSpringsOfAnIrregularMeshMayBeInFinerOnes) {
+  std::vector<double> lengths(16);
+  for (int i = 0; i < 16; ++i) lengths[i] = 0.01 * std::pow(1.04, i);
+  SpringClassOptions options{1.05, 2};
+  options.finer = {lengths[6], 4};
+  const SpringClasses classes = ClassesOf(Star(lengths, {}), options);
+  EXPECT_EQ(classes.of_spring, (std::vector<int>{0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3}));
+  EXPECT_EQ(classes.count, 4);
+  EXPECT_EQ(classes.like_the_last, std::vector<bool>(4, true));
 }
 
 // A square of nodes with a diagonal, whose springs have these lengths: along x twice, along y
@@ -80,7 +93,7 @@ TEST(SpringClasses, DirectionsOfAnIrregularMeshAreNotToldApart) {
 TEST(SpringClasses, HandsAreClassedByHowNearTheyAre) {
   const SpringMassSystem star =
       Star({0.01, 0.02, 0.02}, {{0, 0.03}, {1, 0.05}, {0, 0.01}, {1, 0.04}});
-  const SpringClasses apart = ClassesOf(star, {1.05, 6, true});
+  const SpringClasses apart = ClassesOf(star, {.jump = 1.05, .hands_apart = true});
   EXPECT_EQ(apart.of_spring, (std::vector<int>{0, 1, 1, 3, 3, 2, 2}));
   EXPECT_EQ(apart.lengths, 2);
   EXPECT_EQ(apart.count, 4);

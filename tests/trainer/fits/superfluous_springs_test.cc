@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/swung_sheet.h"
@@ -27,6 +28,29 @@ struct Sheet {
     for (int i = 0; i < factors.classes().count; ++i) {
       if (soft[i]) fit.x[factors.first_class() + i] += softer;
     }
+  }
+  // As a fit would make classes of which springs of this length and longer ones carry nothing.
+  void CarryUpTo(double length) {
+    const Parameters& factors = fit.body.factors();
+    const auto classes = static_cast<std::size_t>(factors.classes().count);
+    std::vector<double> carrying(classes, 0), count(classes, 0);
+    for (int e = 0; e < factors.base().spring_count(); ++e) {
+      const auto one = static_cast<std::size_t>(factors.classes().of_spring[e]);
+      if (factors.base().rest_length[e] < length) carrying[one] += 1;
+      count[one] += 1;
+    }
+    fit.x.setZero();
+    for (std::size_t i = 0; i < classes; ++i) {
+      fit.x[factors.first_class() + static_cast<int>(i)] =
+          std::log(std::max(0.01, carrying[i] / count[i]));
+    }
+  }
+  void MakeIrregular() {
+    for (int i = 0; i < recording.particle_count(); ++i) {
+      recording.rest.col(i) +=
+          0.3 * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
+    }
+    fit = Fit();
   }
   std::optional<SmoothlyFitted> Without() const {
     return WithoutSuperfluousSprings(fit, recording, SpringNet());
@@ -69,6 +93,29 @@ TEST(SuperfluousSprings, AreLeftOutAndTheRestStaysAsItIs) {
   }
   EXPECT_EQ(system.drag, expected.drag);
   EXPECT_EQ(system.contact, expected.contact);
+}
+
+// In an irregular mesh the object's springs end within a class.
+TEST(SuperfluousSprings, TellWhereSpringsOfAnIrregularMeshEnd) {
+  Sheet sheet;
+  sheet.MakeIrregular();
+  const SpringMassSystem dense = sheet.fit.System();
+  ASSERT_TRUE(sheet.fit.body.factors().classes().irregular);
+  std::vector<double> lengths(dense.rest_length.begin(), dense.rest_length.end());
+  std::sort(lengths.begin(), lengths.end());
+  const std::size_t most = lengths.size() * 3 / 4;
+  for (std::size_t end : {most, most + 1}) {
+    Sheet sparse = sheet;
+    int rounds = 0;
+    for (;; ++rounds) {
+      sparse.CarryUpTo(lengths[end]);
+      const auto next = sparse.Without();
+      if (!next) break;
+      sparse.fit = *next;
+    }
+    EXPECT_EQ(sparse.fit.System().springs, OnlyShorter(dense, lengths[end]).springs);
+    EXPECT_LE(rounds, 3);
+  }
 }
 
 // Of its springs beside the longest, a particle in the sheet's middle has none.
