@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace physpring {
 namespace {
@@ -45,7 +46,7 @@ void CutByDirection(const SpringMassSystem& system, const std::vector<int>& sort
     if (first_of.size() > kMostDirections) return;
   }
   for (std::size_t i = 0; i < sorted.size(); ++i) classes->of_spring[sorted[i]] = made[i];
-  classes->like_the_last = like_the_last;
+  classes->like_the_last = std::move(like_the_last);
   classes->count = classes->lengths = static_cast<int>(first_of.size());
 }
 

@@ -27,9 +27,21 @@ SpringMassSystem Truth(const Recording& recording) {
   return truth;
 }
 
-// Its motion, measured with noise.
-FitData Measured() {
-  Recording recording = SwungSheet(40);
+// Its particles, each moved by some part of their spacing.
+Recording Jittered(Recording recording, double part) {
+  for (int i = 0; i < recording.particle_count(); ++i) {
+    const Eigen::Vector3d moved =
+        part * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
+    recording.start.col(i) += moved;
+    for (auto& frame : recording.points) frame.col(i) += moved;
+  }
+  recording.rest = recording.start;
+  return recording;
+}
+
+// The motion of the truth, measured with noise.
+FitData Measured(double jitter) {
+  Recording recording = Jittered(SwungSheet(40), jitter);
   MoveAs(Truth(recording), true, &recording);
   AddNoise(&recording, 3);
   FitData data;
@@ -45,13 +57,20 @@ double Strayed(const SpringMassSystem& system, const SpringMassSystem& truth) {
 
 class SmoothRefinement : public testing::Test {
  protected:
-  SmoothRefinement() {
+  explicit SmoothRefinement(double jitter = 0) : data_(Measured(jitter)) {
     options_.neighbours = {kNeighbours};
     options_.controller_velocity = true;
     model_.factors = Eigen::VectorXd::Zero(model_.ParametersOf(recording_).size());
   }
 
-  const FitData data_ = Measured();
+  SmoothlyChosen Chosen(const Work& work) const {
+    return ChooseSmoothBody(model_, episodes_, options_, /*few=*/true, work);
+  }
+  SmoothlyChosen Refined(const SmoothlyChosen& chosen, const Work& work) const {
+    return Refine(chosen, episodes_, options_, work);
+  }
+
+  const FitData data_;
   const Recording& recording_ = data_.recordings[0];
   const std::vector<Episode> episodes_ = FitEpisodes(data_, 1);
   const SpringMassSystem truth_ = Truth(recording_);
@@ -62,9 +81,8 @@ class SmoothRefinement : public testing::Test {
 // The net ends with the springs of the truth, fits as well, and is held near a uniform one.
 TEST_F(SmoothRefinement, LeavesOutWhatTheObjectHasNot) {
   const auto [before, after] = RunToTheEnd([&](const Work& work) {
-    const SmoothlyChosen chosen =
-        ChooseSmoothBody(model_, episodes_, options_, /*few=*/true, work.Part("choice", 0, 0.5));
-    return std::pair{chosen, Refine(chosen, episodes_, options_, work.Part("refined", 0.5, 1))};
+    const SmoothlyChosen chosen = Chosen(work.Part("choice", 0, 0.5));
+    return std::pair{chosen, Refined(chosen, work.Part("refined", 0.5, 1))};
   });
   const SpringMassSystem dense = before.fit.System(), sparse = after.fit.System();
   ASSERT_GT(dense.spring_count(), 1.2 * truth_.spring_count());
@@ -91,9 +109,24 @@ TEST_F(SmoothRefinement, BringsBackAClassThatIsLost) {
   const SmoothlyChosen lost{{body, x}, model_, 0, options_.substeps};
   const auto [alone, refined] = RunToTheEnd([&](const Work& work) {
     return std::pair{FitToTheEnd(lost.fit, model_, episodes_, options_, work.Part("alone", 0, 0.5)),
-                     Refine(lost, episodes_, options_, work.Part("refined", 0.5, 1))};
+                     Refined(lost, work.Part("refined", 0.5, 1))};
   });
   EXPECT_LT(Strayed(refined.fit.System(), truth_), 0.5 * Strayed(alone.System(), truth_));
+}
+
+class IrregularRefinement : public SmoothRefinement {
+ protected:
+  IrregularRefinement() : SmoothRefinement(0.3) {}
+};
+
+// Its lengths fall into no classes, and the truth ends within one that holds other springs, too.
+TEST_F(IrregularRefinement, EndsWhereTheObjectEnds) {
+  const SmoothlyChosen after = RunToTheEnd([&](const Work& work) {
+    return Refined(Chosen(work.Part("choice", 0, 0.5)), work.Part("refined", 0.5, 1));
+  });
+  ASSERT_TRUE(after.fit.body.factors().classes().irregular);
+  EXPECT_EQ(after.fit.System().springs, truth_.springs);
+  EXPECT_LT(Strayed(after.fit.System(), truth_), 0.03);
 }
 
 }  // namespace
