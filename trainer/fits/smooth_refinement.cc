@@ -28,9 +28,10 @@ constexpr double kMostLoss = 0.02;
 constexpr double kLeastGainOfSteps = 5, kMostRiseOfSprings = 20;
 constexpr double kFiner = 3, kLeastFiner = 1.1;  // times the sub-steps
 constexpr int kMostRounds = 6;                   // of each refinement
+// Times the best error: a fit that starts with more is led by an observer first.
+constexpr double kNearby = 1.05;
 // A new start may fit worse by this part: its body is the simpler one. Its prior holds classes as
 // near to the law of all springs as this.
-constexpr double kNearby = 1.05;  // times the best error
 constexpr double kMostLossOfStart = 0.005, kAlikeClasses = 0.12;
 // Parts of the work.
 constexpr double kSparseDone = 0.3, kFinerDone = 0.6, kStartDone = 0.8, kSparseAgain = 0.85,
