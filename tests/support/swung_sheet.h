@@ -31,6 +31,18 @@ inline Recording SwungSheet(int frames) {
   return recording;
 }
 
+// The sheet's particles, each moved by some part of their spacing: an irregular mesh.
+inline Recording Jittered(Recording recording, double part) {
+  for (int i = 0; i < recording.particle_count(); ++i) {
+    const Eigen::Vector3d moved =
+        part * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
+    recording.start.col(i) += moved;
+    for (auto& frame : recording.points) frame.col(i) += moved;
+  }
+  recording.rest = recording.start;
+  return recording;
+}
+
 // The system without its springs of this length and longer ones.
 inline SpringMassSystem OnlyShorter(SpringMassSystem system, double length) {
   int kept = 0;

@@ -42,7 +42,11 @@ ParameterOptions SmoothOptions(const SpringMassSystem& start, const Recording& r
   ParameterOptions options = CommonOptions(start, recording, kind);
   options.loss_times = true;
   options.class_dashpots = body.class_loss_times;
-  options.classes = {kClassJump, kEqualClasses, body.finer, body.hands_apart, body.directions};
+  options.classes = {.jump = kClassJump,
+                     .equal = kEqualClasses,
+                     .finer = body.finer,
+                     .hands_apart = body.hands_apart,
+                     .directions = body.directions};
   options.modes = modes;
   return options;
 }

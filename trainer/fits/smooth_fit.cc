@@ -18,9 +18,9 @@ constexpr double kSmoothDamping = 1e-2;               // the damping with which 
 // A stage of a fit: under an observer of this gain, and how far down.
 struct Stage {
   enum class Depth {
-    kRough,  // not to the end; under an observer in floats
+    kRough,  // not to the end
     kEnd,
-    kBottom  // in doubles, with derivatives that are exact enough for the last steps
+    kBottom  // all that is compared has one number of sub-steps, as the last steps want
   };
   double gain;
   Depth depth;
@@ -77,8 +77,8 @@ class SmoothFit {
 
  private:
   MotionProblem::Options Follow(const Stage& stage) const;
-  // Whether derivatives are exact. Under an observer they need not be. Over a ground they are only
-  // at the bottom.
+  // Whether in doubles, with derivatives that are exact enough for the last steps. Under an
+  // observer they need not be. Over a ground they are only at the bottom.
   bool IsExact(const Stage& stage) const {
     return stage.depth == Stage::Depth::kBottom || (stage.gain == 0 && !recording_.ground);
   }

@@ -105,11 +105,12 @@ class Refinement {
   // Led back to the motion first, where the start is so far from it that it would be lost.
   SmoothlyFitted NotLost(const SmoothlyFitted& start, const Work& work) const {
     if (ErrorOf(start) <= kNearby * best_error_) return ToTheEnd(start, work);
-    return ToTheEnd(Guided(start, work), work.Stretch("end", 0.3, 1));
+    return LedToTheEnd(start, work);
   }
-  SmoothlyFitted Guided(const SmoothlyFitted& start, const Work& work) const {
-    return FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
-                      work.Stretch("rough", 0, 0.3));
+  SmoothlyFitted LedToTheEnd(const SmoothlyFitted& start, const Work& work) const {
+    const SmoothlyFitted led = FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
+                                          work.Stretch("rough", 0, 0.3));
+    return ToTheEnd(led, work.Stretch("end", 0.3, 1));
   }
   static Work Round(const Work& work, int round) {
     return work.Stretch(fmt::format("round {}", round), 0, 1);
@@ -171,8 +172,7 @@ void Refinement::StartAnew(const Work& work) {
   widths.classes = kAlikeClasses;
   start.body.SetWidths(widths);
   start.x = start.body.NumbersLike(Uniform(best_.fit.System()), best_.fit.x);
-  start = Guided(start, work);
-  const SmoothlyFitted fit = ToTheEnd(start, work.Stretch("end", 0.3, 1));
+  const SmoothlyFitted fit = LedToTheEnd(start, work);
   const double error = ErrorOf(fit);
   if (error <= (1 + kMostLossOfStart) * best_error_) Take(fit, error);
 }

@@ -16,7 +16,7 @@ constexpr double kSuperfluous = 0.1;
 // In an irregular mesh the object's springs end at one length. A class beside it that has less than
 // this part of what is typical is more likely beyond than within; so is a single spring.
 constexpr double kBeyond = 0.25, kSpringBeyond = 0.5;
-constexpr double kJustBelow = 1 - 1e-9;  // a length
+constexpr double kJustBelow = 1 - 1e-9;  // a length: as long but for rounding is beyond, too
 constexpr int kFineClass = 4;            // springs
 
 // Of each class, the mean stiffness times length, N, and the number of springs.

@@ -45,9 +45,8 @@ TEST(SpringClasses, AreEquallyFilledWhereLengthsDoNotJump) {
 TEST(SpringClasses, LongSpringsOfAnIrregularMeshMayBeInFinerOnes) {
   std::vector<double> lengths(16);
   for (int i = 0; i < 16; ++i) lengths[i] = 0.01 * std::pow(1.04, i);
-  SpringClassOptions options{1.05, 2};
-  options.finer = {lengths[6], 4};
-  const SpringClasses classes = ClassesOf(Star(lengths, {}), options);
+  const SpringClasses classes =
+      ClassesOf(Star(lengths, {}), {.jump = 1.05, .equal = 2, .finer = {lengths[6], 4}});
   EXPECT_EQ(classes.of_spring, (std::vector<int>{0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3}));
   EXPECT_EQ(classes.count, 4);
   EXPECT_EQ(classes.like_the_last, std::vector<bool>(4, true));

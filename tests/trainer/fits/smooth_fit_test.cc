@@ -61,13 +61,8 @@ TEST(FitToTheEnd, EndsAtTheBottom) {
 // A net in an irregular mesh gets springs beyond its radius, and they alone begin soft (by whole
 // classes of length: a few shorter ones may, too).
 TEST(SoftSmoothBody, SpringsBeyondTheChosenRadiusBeginSoft) {
-  Recording recording = SwungSheet(10);
-  for (int i = 0; i < recording.particle_count(); ++i) {
-    recording.rest.col(i) +=
-        0.3 * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
-  }
   FitData data;
-  data.recordings.push_back(std::move(recording));
+  data.recordings.push_back(Jittered(SwungSheet(10), 0.3));
   data.continuous_recording.push_back(0);
   const Recording& measured = data.recordings[0];
   TrainOptions options;

@@ -27,18 +27,6 @@ SpringMassSystem Truth(const Recording& recording) {
   return truth;
 }
 
-// Its particles, each moved by some part of their spacing.
-Recording Jittered(Recording recording, double part) {
-  for (int i = 0; i < recording.particle_count(); ++i) {
-    const Eigen::Vector3d moved =
-        part * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
-    recording.start.col(i) += moved;
-    for (auto& frame : recording.points) frame.col(i) += moved;
-  }
-  recording.rest = recording.start;
-  return recording;
-}
-
 // The motion of the truth, measured with noise.
 FitData Measured(double jitter) {
   Recording recording = Jittered(SwungSheet(40), jitter);

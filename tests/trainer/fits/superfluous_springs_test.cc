@@ -46,10 +46,7 @@ struct Sheet {
     }
   }
   void MakeIrregular() {
-    for (int i = 0; i < recording.particle_count(); ++i) {
-      recording.rest.col(i) +=
-          0.3 * kSheetSpacing * Eigen::Vector3d(std::sin(7 * i), 0, std::cos(9 * i));
-    }
+    recording = Jittered(recording, 0.3);
     fit = Fit();
   }
   std::optional<SmoothlyFitted> Without() const {
