@@ -96,15 +96,33 @@ class Running {
   double checkpoint_seconds_ = 0;
 };
 
-// Of forces that did not set the twin's scale.
-std::vector<std::string> WarnOfUnusedForces(const Twin& twin, const FitData& data) {
+// Whether a force is known in a frame that is fitted.
+bool HasFittedForce(const Recording& recording) {
+  const auto end = recording.force.begin() +
+                   std::min(recording.train_frames, static_cast<int>(recording.force.size()));
+  return std::any_of(recording.force.begin(), end,
+                     [](const Eigen::MatrixXd& frame) { return !frame.array().isNaN().all(); });
+}
+
+// Of forces that did not set the twin's scale, or set it far from what the recording says.
+std::vector<std::string> WarnOfForces(const Twin& twin, const FitData& data) {
+  constexpr double kFar = 10;
   std::vector<std::string> warnings;
   for (const Recording& recording : data.recordings) {
-    if (twin.force_scale || recording.force.empty()) continue;
-    warnings.push_back(fmt::format(
-        "recording {}: array 'force' is not used: it has no number in a frame for fitting, or does "
-        "not agree with how the grasps must pull the object (N, in the axes of the recording)",
-        recording.name));
+    if (recording.force.empty()) continue;
+    const std::string start = fmt::format("recording {}: array 'force' ", recording.name);
+    const double weighed = twin.levels[0].system.mass.sum();
+    const double times = weighed / recording.mass;
+    if (!twin.force_scale) {
+      warnings.push_back(start + (HasFittedForce(recording)
+                                      ? "is not used: it does not agree with how the grasps must "
+                                        "pull the object (N, in the axes of the recording)"
+                                      : "is not used: it has no number in a frame for fitting"));
+    } else if (times > kFar || times < 1 / kFar) {
+      warnings.push_back(
+          fmt::format("{}makes it {:.4g} kg, {:.3g} times its 'mass' of {:.4g} kg; is it in N?",
+                      start, weighed, times, recording.mass));
+    }
   }
   return warnings;
 }
@@ -167,7 +185,7 @@ std::vector<EffectValues> EffectsOf(const Twin& twin, const std::string& path) {
 
 FitReport JudgeTraining(const TrainingTask& task, const Twin& twin) {
   FitReport report = JudgeFit(twin, ByClockOf(twin, task.data), task.options);
-  std::vector<std::string> warnings = WarnOfUnusedForces(twin, task.data);
+  std::vector<std::string> warnings = WarnOfForces(twin, task.data);
   for (const auto& more : {WarnOfUnjoinedControllers(twin, task.data.recordings[0].name),
                            std::vector<std::string>(report.warnings)}) {
     warnings.insert(warnings.end(), more.begin(), more.end());

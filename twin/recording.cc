@@ -79,6 +79,18 @@ void ReadCloudsAlone(NpzFields& fields, const std::string& path, Recording& reco
   recording.points.assign(fields.Extent("T"), Points(3, 0));
 }
 
+// Sizes of forces are no less than 0.
+void ExpectForceSizes(const NpzFields& fields, const std::vector<Eigen::MatrixXd>& force) {
+  for (std::size_t t = 0; t < force.size(); ++t) {
+    for (Eigen::Index c = 0; force[t].rows() == 1 && c < force[t].cols(); ++c) {
+      if (!(force[t](0, c) < 0)) continue;
+      fields.Fail("force", fmt::format("holds the size {:.4g} N at frame {}, controller {}, "
+                                       "expected one of at least 0",
+                                       force[t](0, c), t, c));
+    }
+  }
+}
+
 void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recording) {
   const bool alone = HasCloudsAlone(fields);
   alone ? ReadCloudsAlone(fields, path, recording) : ReadPoints(fields, path, recording);
@@ -86,6 +98,7 @@ void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recordi
   ReadControllers(fields, times_of_controllers, &recording);
   if (fields.Has("force")) {
     recording.force = fields.FramesOfNumbers("force", "C", times_of_controllers);
+    ExpectForceSizes(fields, recording.force);
   }
   if (fields.Has("surface") && !alone)
     recording.surface = ReadTracks(fields, path, "surface", "S", recording);

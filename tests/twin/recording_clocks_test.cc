@@ -125,6 +125,9 @@ TEST_F(TimedRecording, ForcesMayBeSizes) {
   arrays_["force"] = NpzArray::Doubles({4, 1}, std::vector<double>{1, 2, infinite, 4}.data());
   EXPECT_NE(ErrorOfChanged().find("'force' holds an infinite number in frame 2"),
             std::string::npos);
+  arrays_["force"] = NpzArray::Doubles({4, 1}, std::vector<double>{1, 2, 3, -4}.data());
+  EXPECT_NE(ErrorOfChanged().find("'force' holds the size -4 N at frame 3, controller 0"),
+            std::string::npos);
   arrays_["force"] = NpzArray::Doubles({4, 2}, std::vector<double>(8).data());
   EXPECT_NE(ErrorOfChanged().find("expected (T, C) with T = 4, C = 1"), std::string::npos);
 }

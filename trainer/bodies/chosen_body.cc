@@ -50,6 +50,16 @@ ChosenBody ChosenBody::WithOtherCone() const {
   return other;
 }
 
+ChosenBody ChosenBody::WithSoftSprings(const Recording& recording) const {
+  ChosenBody more = *this;
+  more.body = physpring::WithSoftSprings(body, recording);
+  if (more.body.radius == body.radius) return more;
+  const Parameters common = more.ParametersOf(recording);
+  more.factors = Eigen::VectorXd::Zero(common.size());
+  more.factors.head(common.first_class()) = factors.head(common.first_class());
+  return more;
+}
+
 LevenbergMarquardtState StepFactors(const ChosenBody& model, const std::vector<Episode>& episodes,
                                     const TrainOptions& options, double gain, double damping) {
   const Recording recording = OnlyFitFrames(episodes.at(0));

@@ -22,6 +22,9 @@ struct ChosenBody {
   ChosenBody WithOtherVelocity() const;
   // The same with the other cone of friction.
   ChosenBody WithOtherCone() const;
+  // The same with springs beyond its radius, where it may have any (body.h). Factors of its classes
+  // of length are left out: the classes of more springs are others.
+  ChosenBody WithSoftSprings(const Recording& recording) const;
 };
 
 // One step of Levenberg-Marquardt on common factors, under an observer of this gain.

@@ -100,9 +100,9 @@ class SmoothChoice {
 
  private:
   bool HasHands() const { return recording_.controller_count() > 0; }
-  SmoothlyFitted StartOf(ChosenBody model, const SmoothBody::Options& body) const {
-    if (with_soft_springs_) model.body = WithSoftSprings(model.body, recording_);
-    return SoftSmoothBody(model, first_, body, body.most_rate > kSlowRate ? kLossier : 1);
+  SmoothlyFitted StartOf(const ChosenBody& model, const SmoothBody::Options& body) const {
+    return SoftSmoothBody(with_soft_springs_ ? model.WithSoftSprings(recording_) : model, first_,
+                          body, body.most_rate > kSlowRate ? kLossier : 1);
   }
   SmoothTrial Judge(const ChosenBody& model, const SmoothlyFitted& fit,
                     const std::vector<Episode>& episodes) const;

@@ -2,6 +2,8 @@
 #include "twin/effects/bending_triples.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace physpring {
@@ -40,15 +42,17 @@ std::vector<BendingTriple> FindBendingTriples(const SpringMassSystem& system) {
   std::vector<BendingTriple> triples;
   for (int b = 0; b < x.cols(); ++b) {
     const std::vector<int>& around = neighbours[static_cast<std::size_t>(b)];
-    // the neighbour that is most opposite to each one
+    // the neighbour that is most opposite to each one, and about as far away: of several on one
+    // line rounding would choose
     const auto opposite = [&](int a) {
       int best = -1;
-      double least = kOpposite;
+      double least = std::numeric_limits<double>::infinity();
       for (int c : around) {
         const Eigen::Vector3d p = x.col(a) - x.col(b), q = x.col(c) - x.col(b);
         const double cosine = p.dot(q) / (p.norm() * q.norm());
-        if (cosine >= least) continue;
-        least = cosine;
+        const double unlike = 2 * (1 + cosine) + std::pow(std::log(p.norm() / q.norm()), 2);
+        if (cosine >= kOpposite || unlike >= least) continue;
+        least = unlike;
         best = c;
       }
       return best;

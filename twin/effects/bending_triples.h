@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a body can bend: triples (a, b, c) of nodes and controllers, b between a and c, that are
 // straight or nearly so in the reference configuration. Along a rod every three neighbours by arc
-// length; in other bodies the pairs of springs that leave a node in opposite directions.
+// length; in other bodies the pairs of springs that leave a node in opposite directions and are
+// about as long.
 #ifndef PHYSPRING_TWIN_EFFECTS_BENDING_TRIPLES_H_
 #define PHYSPRING_TWIN_EFFECTS_BENDING_TRIPLES_H_
 
