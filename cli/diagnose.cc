@@ -68,10 +68,9 @@ void ReadBefore(const DiagnoseArguments& arguments, const Twin& twin, DiagnosisI
   for (const Recording& recording : input->before) input->before_paths.push_back(recording.name);
 }
 
-// Makes the folder before the work, and checks that all outputs can be written.
+// Checks that all outputs can be written.
 Outputs MakeOutputs(const DiagnoseArguments& arguments) {
   const std::filesystem::path folder(arguments.output);
-  MakeFolder(arguments.output);
   const Outputs outputs{(folder / "report.json").string(), (folder / "report.html").string(),
                         (folder / std::filesystem::path(arguments.twin).filename()).string(),
                         (folder / "checkpoint.npz").string()};
@@ -138,6 +137,7 @@ void Run(const DiagnoseArguments& arguments) {
   for (const auto* recordings : {&input.data.recordings, &input.judged, &input.before}) {
     PrintRemarks(*recordings);
   }
+  const OutputFolder folder(arguments.output);
   const Outputs outputs = MakeOutputs(arguments);
   const OutputLock lock(arguments.output);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen,

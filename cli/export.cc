@@ -127,7 +127,12 @@ void AddExportCommand(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   AddSeed(command, &arguments->samples.seed, "of the samples");
-  command->callback([arguments, command] { Run(*arguments, CommandLine(*command)); });
+  command->callback([arguments, command] {
+    if (command->count("--flexes") > 0 && arguments->options.springs != SpringKind::kFlex) {
+      throw CLI::ValidationError("--flexes", "is of --springs flex");
+    }
+    Run(*arguments, CommandLine(*command));
+  });
 }
 
 }  // namespace physpring

@@ -55,4 +55,13 @@ void ExpectNew(const std::string& path, bool force) {
   throw Error(fmt::format("{}: exists; --force overwrites", path));
 }
 
+OutputFolder::OutputFolder(const std::string& path) : path_(path), was_there_(Exists(path)) {
+  MakeFolder(path);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code not_empty;
+  if (!was_there_) fs::remove(path_, not_empty);
+}
+
 }  // namespace physpring

@@ -18,6 +18,19 @@ bool Exists(const std::string& path);
 // Throws Error if there is a file at `path`, unless `force`.
 void ExpectNew(const std::string& path, bool force);
 
+// A folder for outputs. One that was not there goes again if nothing was written into it.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder();
+
+ private:
+  std::string path_;
+  bool was_there_;
+};
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_CLI_OUTPUT_FILES_H_

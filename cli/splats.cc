@@ -96,7 +96,7 @@ void WriteFrames(const SplatsArguments& arguments, const Splats& splats,
       throw Error(path(frame) + ": is the input; use another folder");
     }
   }
-  MakeFolder(arguments.folder);
+  const OutputFolder folder(arguments.folder);
   const OutputLock lock(arguments.folder);
   const SplatMotion motion(splats, nodes[0]);
   const InterruptWatch watch;

@@ -35,7 +35,7 @@ void Run(const SplitArguments& arguments) {
     paths.push_back((std::filesystem::path(arguments.folder) / (part.name + ".npz")).string());
     ExpectNew(paths.back(), arguments.force);
   }
-  MakeFolder(arguments.folder);
+  const OutputFolder folder(arguments.folder);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     WriteRecording(parts[i], paths[i]);
     fmt::print("{}: {} points, {} interior, {} controllers, {:.3g} kg\n", paths[i],

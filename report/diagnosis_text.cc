@@ -55,7 +55,7 @@ std::string DescribeParameters(const Diagnosis& diagnosis, std::size_t effect) {
     if (range.certainty->IsUntold()) {
       text += " (not told by the recordings)";
     } else if (range.certainty->IsHardlyTold()) {
-      text += " (hardly told from other parameters)";
+      text += " (other parameters move the body nearly alike)";
     }
   }
   return text;

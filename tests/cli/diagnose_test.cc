@@ -149,6 +149,7 @@ TEST_F(Diagnose, IsNotJudgedByFramesInWhichNothingIsSeen) {
   WriteRecording(recording, held_);
   EXPECT_TRUE(FailsWith(Run(output_),
                         ": its points are seen in 2 of the frames to judge by, 5 are the fewest"));
+  EXPECT_FALSE(std::filesystem::exists(output_));
 }
 
 TEST_F(Diagnose, NeedsNoiseThatCanBeMeasured) {

@@ -122,6 +122,7 @@ TEST_F(Export, BadUsageIsToldAsSuch) {
                                                     {"--level", "-1"},
                                                     {"--level", "first"},
                                                     {"--flexes", "0"},
+                                                    {"--flexes", "3"},
                                                     {"--timestep", "0"},
                                                     {"--name", ""}}) {
     const ProgramResult result = Run(arguments);

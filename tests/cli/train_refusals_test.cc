@@ -142,6 +142,7 @@ TEST_F(Train, RefusesBadUsage) {
   refused({"--epochs", "3", "--method", "smooth"}, "--epochs: is not of --method smooth");
   refused({"--reduction", "kmeans"}, "--reduction: needs --levels 2 or more");
   refused({"--features", "positions"}, "--features: needs --levels 2 or more");
+  refused({"--latent", "5"}, "--latent: needs --levels 2 or more");
   refused({"--levels", "2", "--ratios", "0.5,0.3"}, "--ratios: are of levels 1, 2, ...");
   refused({"--self-collision"}, "--self-collision: is of --method two-stage");
   refused({"--resume", "--force"}, "--resume excludes --force");
