@@ -23,8 +23,7 @@ TEST(ChosenBody, KeepsItsCommonFactorsWithSpringsBeyondItsRadius) {
       chosen.factors = Eigen::VectorXd::LinSpaced(common.size(), 0.1, 0.5);
       const ChosenBody more = chosen.WithSoftSprings(recording);
       ASSERT_EQ(more.factors.size(), more.ParametersOf(recording).size()) << neighbours;
-      EXPECT_EQ(more.factors.head(common.first_class()),
-                chosen.factors.head(common.first_class()));
+      EXPECT_EQ(more.factors.head(common.first_class()), chosen.factors.head(common.first_class()));
       EXPECT_EQ(more.System(recording).drag, chosen.System(recording).drag);
       if (more.factors.size() != chosen.factors.size()) ++of_other_size;
     }
