@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "report/info_text.h"
 #include "twin/ground.h"
@@ -58,14 +61,56 @@ std::string DescribePoints(const Recording& recording, const Measured& measured)
                          : "");
 }
 
-std::string DescribeForces(const Recording& recording) {
+double MeasuredForces(const Recording& recording) {
   double measured = 0, all = 0;
   for (const Eigen::MatrixXd& frame : recording.force) {
     measured += static_cast<double>((!frame.array().isNaN()).count());
     all += static_cast<double>(frame.size());
   }
+  return measured / all;
+}
+
+std::string DescribeForces(const Recording& recording) {
   return fmt::format("{}, {:.1f} % of them measured",
-                     recording.force[0].rows() == 1 ? "sizes" : "vectors", 100 * measured / all);
+                     recording.force[0].rows() == 1 ? "sizes" : "vectors",
+                     100 * MeasuredForces(recording));
+}
+
+Json ForcesToJson(const Recording& recording) {
+  if (recording.force.empty()) return nullptr;
+  return {{"components", recording.force[0].rows()},
+          {"measured_fraction", MeasuredForces(recording)}};
+}
+
+// The first and the last frame in which each controller holds.
+std::vector<std::pair<int, int>> HeldFrames(const Recording& recording) {
+  std::vector<std::pair<int, int>> frames;
+  for (Eigen::Index c = 0; c < recording.held.cols(); ++c) {
+    int first = -1, last = -1;
+    for (int t = 0; t < static_cast<int>(recording.held.rows()); ++t) {
+      if (!recording.held(t, c)) continue;
+      if (first < 0) first = t;
+      last = t;
+    }
+    frames.emplace_back(first, last);
+  }
+  return frames;
+}
+
+std::string DescribeControllers(const Recording& recording) {
+  std::string text = fmt::format("{}", recording.controller_count());
+  if (recording.held.size() == 0) return text;
+  std::map<std::pair<int, int>, int> counts;
+  for (const auto& frames : HeldFrames(recording)) ++counts[frames];
+  std::vector<std::string> parts;
+  for (const auto& [frames, count] : counts) {
+    parts.push_back(fmt::format("{} in frames {} to {}", count, frames.first, frames.second));
+  }
+  return fmt::format("{}, one for each time that one holds: {}", text, fmt::join(parts, ", "));
+}
+
+int ObjectCount(const Recording& recording) {
+  return recording.object.size() > 0 ? recording.object.maxCoeff() + 1 : 1;
 }
 
 double RodLength(const Recording& recording) {
@@ -93,9 +138,9 @@ std::string DescribeRecording(const Recording& recording) {
                              recording.fps, (frames - 1) / recording.fps, recording.train_frames));
   line("points", DescribePoints(recording, measured));
   line("interior", fmt::format("{}", recording.interior_count()));
-  line("controllers",
-       fmt::format("{}{}", recording.controller_count(),
-                   recording.held.size() > 0 ? ", one for each time that one holds" : ""));
+  line("controllers", DescribeControllers(recording));
+  if (recording.two_clocks) line("clocks", "the controllers have one of their own");
+  if (ObjectCount(recording) > 1) line("objects", fmt::format("{}", ObjectCount(recording)));
   if (!recording.force.empty()) line("force", DescribeForces(recording));
   if (!recording.surface.empty())
     line("surface", fmt::format("{}", PointColumns(recording.surface)));
@@ -133,6 +178,10 @@ Json RecordingToJson(const Recording& recording) {
           {"points", recording.point_count()},
           {"interior", recording.interior_count()},
           {"controllers", recording.controller_count()},
+          {"held_frames", recording.held.size() > 0 ? Json(HeldFrames(recording)) : Json(nullptr)},
+          {"two_clocks", recording.two_clocks},
+          {"force", ForcesToJson(recording)},
+          {"objects", ObjectCount(recording)},
           {"surface", PointColumns(recording.surface)},
           {"track", PointColumns(recording.track)},
           {"missing_fraction", measured.missing_fraction},

@@ -238,18 +238,25 @@ void SetVelocity(const std::string& path, Recording& recording) {
                             ": starts in motion: velocities are taken from the first frames");
 }
 
+// Objects as declared, or else as found.
+void TellObjects(const std::string& path, Recording& recording) {
+  if (recording.object.size() > 0) {
+    recording.object = DeclaredObjects(recording, recording.object);
+    return;
+  }
+  recording.object = FindObjects(recording);
+  if (recording.object.size() == 0) return;
+  recording.warnings.push_back(
+      fmt::format("{}: shows {} objects that part: no spring joins them; the array 'object' "
+                  "declares them",
+                  path, recording.object.maxCoeff() + 1));
+}
+
 // Works out what is not given, and says what is odd.
 void Check(const std::string& path, bool velocity_given, Recording& recording) {
   const std::string left_out = LeaveOutOutliers(path, &recording);
   if (!left_out.empty()) recording.warnings.push_back(left_out);
-  if (recording.object.size() > 0) {
-    recording.object = DeclaredObjects(recording, recording.object);
-  } else if ((recording.object = FindObjects(recording)).size() > 0) {
-    recording.warnings.push_back(
-        fmt::format("{}: shows {} objects that part: no spring joins them; the array 'object' "
-                    "declares them",
-                    path, recording.object.maxCoeff() + 1));
-  }
+  TellObjects(path, recording);
   if (!velocity_given) SetVelocity(path, recording);
   for (const std::string& oddity : FindOddities(recording)) {
     recording.warnings.push_back(fmt::format("{}: {}", path, oddity));

@@ -42,8 +42,9 @@ constexpr std::array<Try, 4> kTries = {
      {"smooth body, stiff, hands apart", true, true, 0.65, kTriesDone}}};
 
 // The gains of the observer, one after the other, under which the first part of the motions shows a
-// smooth body the way, and under which it follows the rest.
-const std::vector<double> kGuidingGains = {0.5, 0.2, 0.1, 0}, kGainsOfTheRest = {0.2, 0.1};
+// smooth body the way.
+std::vector<double> GuidingGains() { return {0.5, 0.2, 0.1, 0}; }
+
 // The loss time that a body of more sub-steps than kSlowRate starts with, relative to others: from
 // a short one on, fits of bodies that lose much end in side valleys.
 constexpr double kLossier = 30;
@@ -148,7 +149,7 @@ SmoothTrial SmoothChoice::Judge(const ChosenBody& model, const SmoothlyFitted& f
 SmoothTrial SmoothChoice::TryRoughly(const ChosenBody& model, const SmoothBody::Options& body,
                                      const Work& work) const {
   SmoothlyFitted fit =
-      FitRoughly(StartOf(model, body), kGuidingGains, model, first_, options_, work);
+      FitRoughly(StartOf(model, body), GuidingGains(), model, first_, options_, work);
   if (&judged_ != &first_) {
     fit = FitRoughly(fit, {0}, model, judged_, options_, work.Stretch("all", 1, 1));
   }
@@ -188,7 +189,7 @@ SmoothTrial SmoothChoice::ToTheEnd(const SmoothTrial& trial, const Work& work) c
   const ChosenBody& model = trial.model;
   SmoothlyFitted fit = trial.fit;
   if (trial.correlation >= kPerhapsNoise) {
-    fit = FitRoughly(fit, kGainsOfTheRest, model, all_, options_, work.Stretch("rest", 0, 0.3));
+    fit = FitRoughly(fit, LeadingGains(), model, all_, options_, work.Stretch("rest", 0, 0.3));
   }
   fit = FitToTheEnd(fit, model, all_, options_, work.Stretch("end", 0.3, 1));
   return Judge(model, fit, all_);

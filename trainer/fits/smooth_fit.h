@@ -33,6 +33,9 @@ struct LinearisedFit {
 SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
                               const SmoothBody::Options& body, double lossier = 1);
 
+// The gains of an observer under which a body that is far off is led back to all of the motions.
+inline std::vector<double> LeadingGains() { return {0.2, 0.1}; }
+
 // Numbers that about fit the episodes, found under an observer of these gains, one after the other.
 SmoothlyFitted FitRoughly(const SmoothlyFitted& start, const std::vector<double>& gains,
                           const ChosenBody& chosen, const std::vector<Episode>& episodes,

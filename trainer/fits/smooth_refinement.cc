@@ -108,7 +108,7 @@ class Refinement {
     return LedToTheEnd(start, work);
   }
   SmoothlyFitted LedToTheEnd(const SmoothlyFitted& start, const Work& work) const {
-    const SmoothlyFitted led = FitRoughly(start, {0.2, 0.1}, best_.model, episodes_, options_,
+    const SmoothlyFitted led = FitRoughly(start, LeadingGains(), best_.model, episodes_, options_,
                                           work.Stretch("rough", 0, 0.3));
     return ToTheEnd(led, work.Stretch("end", 0.3, 1));
   }
