@@ -68,8 +68,8 @@ void ReadBefore(const DiagnoseArguments& arguments, const Twin& twin, DiagnosisI
   for (const Recording& recording : input->before) input->before_paths.push_back(recording.name);
 }
 
-// Checks that all outputs can be written.
-Outputs MakeOutputs(const DiagnoseArguments& arguments) {
+// All of them can be written.
+Outputs CheckedOutputs(const DiagnoseArguments& arguments) {
   const std::filesystem::path folder(arguments.output);
   const Outputs outputs{(folder / "report.json").string(), (folder / "report.html").string(),
                         (folder / std::filesystem::path(arguments.twin).filename()).string(),
@@ -138,7 +138,7 @@ void Run(const DiagnoseArguments& arguments) {
     PrintRemarks(*recordings);
   }
   const OutputFolder folder(arguments.output);
-  const Outputs outputs = MakeOutputs(arguments);
+  const Outputs outputs = CheckedOutputs(arguments);
   const OutputLock lock(arguments.output);
   const DiagnosisCheckpoint checkpoint(outputs.checkpoint, arguments.twin, chosen,
                                        arguments.options);

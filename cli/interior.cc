@@ -11,6 +11,7 @@
 #include "cli/output_files.h"
 #include "exporter/mesh_interior.h"
 #include "exporter/mesh_place.h"
+#include "twin/checks/objects.h"
 #include "twin/error.h"
 #include "twin/recording.h"
 
@@ -29,7 +30,7 @@ void ExpectPlain(const Recording& recording, const std::string& path) {
     throw Error(
         fmt::format("{}: shows {} objects, but a mesh is of one; `physpring split` makes a "
                     "recording of each",
-                    path, recording.object.maxCoeff() + 1));
+                    path, ObjectCount(recording)));
   }
   const char* array = recording.interior_count() > 0 ? "interior"
                       : recording.rest_given         ? "rest"

@@ -62,12 +62,11 @@ std::string WhatIsLeft(const Twin& twin, const FitData& data, const TrainOptions
       fmt::format("what is left is {} (the errors of one frame and the next correlate by {:.2f})",
                   noise ? "noise" : "more than noise", correlation);
   const bool is_net = twin.material.has_value();  // no chain
-  if (!noise && is_net) {
-    line +=
-        "; the body below is not quite the object, whose true values may be far outside the "
-        "intervals";
-  }
-  if (!noise && is_net && LeavesOutSingleValues(data, options)) {
+  if (noise || !is_net) return line;
+  line +=
+      "; the body below is not quite the object, whose true values may be far outside the "
+      "intervals";
+  if (LeavesOutSingleValues(data, options)) {
     line +=
         "; for so many particles and frames single springs were not tried: --optimizer "
         "gauss-newton fits them";

@@ -107,22 +107,23 @@ bool HasFittedForce(const Recording& recording) {
 // Of forces that did not set the twin's scale, or set it far from what the recording says.
 std::vector<std::string> WarnOfForces(const Twin& twin, const FitData& data) {
   constexpr double kFar = 10;
+  const double weighed = twin.levels[0].system.mass.sum();
   std::vector<std::string> warnings;
   for (const Recording& recording : data.recordings) {
     if (recording.force.empty()) continue;
-    const std::string start = fmt::format("recording {}: array 'force' ", recording.name);
-    const double weighed = twin.levels[0].system.mass.sum();
+    const auto warn = [&](const std::string& what) {
+      warnings.push_back(fmt::format("recording {}: array 'force' {}", recording.name, what));
+    };
     const double times = weighed / recording.mass;
-    if (!twin.force_scale) {
-      warnings.push_back(start + (HasFittedForce(recording)
-                                      ? "is not used: it does not agree with how the grasps must "
-                                        "pull the object (N, in the axes of the recording)"
-                                      : "is not used: it has no number in a frame for fitting"));
-    } else if (times > kFar || times < 1 / kFar) {
-      warnings.push_back(
-          fmt::format("{}makes it {:.4g} kg, {:.3g} times its 'mass' of {:.4g} kg; is it in N?",
-                      start, weighed, times, recording.mass));
+    if (twin.force_scale && (times > kFar || times < 1 / kFar)) {
+      warn(fmt::format("makes it {:.4g} kg, {:.3g} times its 'mass' of {:.4g} kg; is it in N?",
+                       weighed, times, recording.mass));
     }
+    if (twin.force_scale) continue;
+    warn(HasFittedForce(recording)
+             ? "is not used: it does not agree with how the grasps must pull the object (N, in the "
+               "axes of the recording)"
+             : "is not used: it has no number in a frame for fitting");
   }
   return warnings;
 }

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "report/info_text.h"
+#include "twin/checks/objects.h"
+#include "twin/grasps.h"
 #include "twin/ground.h"
 
 namespace physpring {
@@ -83,17 +85,10 @@ Json ForcesToJson(const Recording& recording) {
 }
 
 // The first and the last frame in which each controller holds.
-std::vector<std::pair<int, int>> HeldFrames(const Recording& recording) {
-  std::vector<std::pair<int, int>> frames;
-  for (Eigen::Index c = 0; c < recording.held.cols(); ++c) {
-    int first = -1, last = -1;
-    for (int t = 0; t < static_cast<int>(recording.held.rows()); ++t) {
-      if (!recording.held(t, c)) continue;
-      if (first < 0) first = t;
-      last = t;
-    }
-    frames.emplace_back(first, last);
-  }
+Json HeldFrames(const Recording& recording) {
+  if (recording.held.size() == 0) return nullptr;
+  Json frames;
+  for (const Grasp& one : AllGrasps(recording)) frames.push_back({one.first, one.last});
   return frames;
 }
 
@@ -101,16 +96,12 @@ std::string DescribeControllers(const Recording& recording) {
   std::string text = fmt::format("{}", recording.controller_count());
   if (recording.held.size() == 0) return text;
   std::map<std::pair<int, int>, int> counts;
-  for (const auto& frames : HeldFrames(recording)) ++counts[frames];
+  for (const Grasp& one : AllGrasps(recording)) ++counts[{one.first, one.last}];
   std::vector<std::string> parts;
   for (const auto& [frames, count] : counts) {
     parts.push_back(fmt::format("{} in frames {} to {}", count, frames.first, frames.second));
   }
   return fmt::format("{}, one for each time that one holds: {}", text, fmt::join(parts, ", "));
-}
-
-int ObjectCount(const Recording& recording) {
-  return recording.object.size() > 0 ? recording.object.maxCoeff() + 1 : 1;
 }
 
 double RodLength(const Recording& recording) {
@@ -178,7 +169,7 @@ Json RecordingToJson(const Recording& recording) {
           {"points", recording.point_count()},
           {"interior", recording.interior_count()},
           {"controllers", recording.controller_count()},
-          {"held_frames", recording.held.size() > 0 ? Json(HeldFrames(recording)) : Json(nullptr)},
+          {"held_frames", HeldFrames(recording)},
           {"two_clocks", recording.two_clocks},
           {"force", ForcesToJson(recording)},
           {"objects", ObjectCount(recording)},

@@ -13,11 +13,6 @@
 namespace physpring {
 namespace {
 
-// A controller that holds from its first frame to its last one.
-struct Grasp {
-  int controller, first, last;
-};
-
 // Those of two frames or more.
 std::vector<Grasp> GraspsOf(const Recording& recording, int controller) {
   std::vector<Grasp> grasps;
@@ -29,17 +24,6 @@ std::vector<Grasp> GraspsOf(const Recording& recording, int controller) {
     if (t > first) grasps.push_back({controller, first, t});
   }
   return grasps;
-}
-
-std::vector<Grasp> AllGrasps(const Recording& recording) {
-  std::vector<Grasp> first, others;
-  for (int c = 0; c < recording.held.cols(); ++c) {
-    const std::vector<Grasp> own = GraspsOf(recording, c);
-    first.push_back(own.at(0));
-    others.insert(others.end(), own.begin() + 1, own.end());
-  }
-  first.insert(first.end(), others.begin(), others.end());
-  return first;
 }
 
 // NaN where a controller does not hold becomes the place before, or the first one after.
@@ -112,6 +96,17 @@ void SetPath(const Grasp& grasp, const Recording& read, int column, Recording* r
 }
 
 }  // namespace
+
+std::vector<Grasp> AllGrasps(const Recording& recording) {
+  std::vector<Grasp> first, others;
+  for (int c = 0; c < recording.held.cols(); ++c) {
+    const std::vector<Grasp> own = GraspsOf(recording, c);
+    first.push_back(own.at(0));
+    others.insert(others.end(), own.begin() + 1, own.end());
+  }
+  first.insert(first.end(), others.begin(), others.end());
+  return first;
+}
 
 void ReadControllers(NpzFields& fields, const std::string& frames, Recording* recording) {
   if (!fields.Has("held")) {

@@ -7,11 +7,21 @@
 #define PHYSPRING_TWIN_GRASPS_H_
 
 #include <string>
+#include <vector>
 
 #include "twin/npz_fields.h"
 #include "twin/recording.h"
 
 namespace physpring {
+
+// A controller that holds from its first frame to its last one.
+struct Grasp {
+  int controller, first, last;
+};
+
+// By `held`, where each controller holds in two frames in a row: first the first ones of the
+// controllers, in their order, then the others.
+std::vector<Grasp> AllGrasps(const Recording& recording);
 
 // Reads `controllers` and, if it is there, `held`, (frames, C). A controller may be NaN where it
 // does not hold: it is where it last held, or will hold first. Throws Error where one holds and is

@@ -249,7 +249,7 @@ void TellObjects(const std::string& path, Recording& recording) {
   recording.warnings.push_back(
       fmt::format("{}: shows {} objects that part: no spring joins them; the array 'object' "
                   "declares them",
-                  path, recording.object.maxCoeff() + 1));
+                  path, ObjectCount(recording)));
 }
 
 // Works out what is not given, and says what is odd.

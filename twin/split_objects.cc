@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "twin/checks/objects.h"
 #include "twin/neighbours.h"
 
 namespace physpring {
@@ -105,7 +106,7 @@ Recording PartOf(const Recording& recording, int object) {
 std::vector<Recording> SplitObjects(const Recording& recording) {
   if (recording.object.size() == 0) return {recording};
   std::vector<Recording> parts;
-  for (int object = 0; object <= recording.object.maxCoeff(); ++object) {
+  for (int object = 0; object < ObjectCount(recording); ++object) {
     parts.push_back(PartOf(recording, object));
   }
   return parts;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "twin/checks/objects.h"
 #include "twin/neighbours.h"
 #include "twin/stability.h"
 
@@ -84,7 +85,7 @@ std::vector<std::array<int, 2>> SpringsOf(const Recording& recording,
                         recording.name);
   }
   std::vector<std::array<int, 2>> all;
-  for (int object = 0; object <= recording.object.maxCoeff(); ++object) {
+  for (int object = 0; object < ObjectCount(recording); ++object) {
     const std::vector<int> columns = ColumnsOf(recording, object);
     const auto controllers =
         std::count_if(columns.begin(), columns.end(), [&](int i) { return i >= particles; });

@@ -52,7 +52,7 @@ double FitClockOffset(const FitData& data, const TrainOptions& options, const Wo
       WithLateHands(ChooseBody(data, options, work.Part("choosing the model", 0, 0.3)), first);
   const SmoothlyFitted start =
       SoftSmoothBody(chosen, episodes, {std::min(kMostRate, MostRate(options, first))});
-  const SmoothlyFitted rough = FitRoughly(start, {0.5, 0.2, 0.1, 0}, chosen, episodes, options,
+  const SmoothlyFitted rough = FitRoughly(start, GuidingGains(), chosen, episodes, options,
                                           work.Part("offset of clocks, roughly", 0.3, 0.6));
   const SmoothlyFitted fitted = FitToTheEnd(rough, chosen, episodes, options,
                                             work.Part("offset of clocks, to the end", 0.6, 1));

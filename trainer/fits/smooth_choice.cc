@@ -41,10 +41,6 @@ constexpr std::array<Try, 4> kTries = {
      {"smooth body, stiff", true, false, 0.45, 0.55},
      {"smooth body, stiff, hands apart", true, true, 0.65, kTriesDone}}};
 
-// The gains of the observer, one after the other, under which the first part of the motions shows a
-// smooth body the way.
-std::vector<double> GuidingGains() { return {0.5, 0.2, 0.1, 0}; }
-
 // The loss time that a body of more sub-steps than kSlowRate starts with, relative to others: from
 // a short one on, fits of bodies that lose much end in side valleys.
 constexpr double kLossier = 30;

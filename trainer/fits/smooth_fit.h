@@ -33,7 +33,9 @@ struct LinearisedFit {
 SmoothlyFitted SoftSmoothBody(const ChosenBody& chosen, const std::vector<Episode>& episodes,
                               const SmoothBody::Options& body, double lossier = 1);
 
-// The gains of an observer under which a body that is far off is led back to all of the motions.
+// The gains of an observer, one after the other: those that show a soft body the way, and those
+// under which one that is far off is led back to all of the motions.
+inline std::vector<double> GuidingGains() { return {0.5, 0.2, 0.1, 0}; }
 inline std::vector<double> LeadingGains() { return {0.2, 0.1}; }
 
 // Numbers that about fit the episodes, found under an observer of these gains, one after the other.

@@ -106,4 +106,8 @@ Eigen::VectorXi DeclaredObjects(const Recording& recording, const Eigen::VectorX
   return numbers.size() > 1 ? object : Eigen::VectorXi();
 }
 
+int ObjectCount(const Recording& recording) {
+  return recording.object.size() > 0 ? recording.object.maxCoeff() + 1 : 1;
+}
+
 }  // namespace physpring

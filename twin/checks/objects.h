@@ -19,6 +19,9 @@ Eigen::VectorXi FindObjects(const Recording& recording);
 // controller belongs to the object of the nearest particle in frame 0.
 Eigen::VectorXi DeclaredObjects(const Recording& recording, const Eigen::VectorXi& declared);
 
+// 1 where recording.object is empty.
+int ObjectCount(const Recording& recording);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_CHECKS_OBJECTS_H_
