@@ -34,7 +34,7 @@ void ExpectPlain(const Recording& recording, const std::string& path) {
   }
   const char* array = recording.interior_count() > 0 ? "interior"
                       : recording.rest_given         ? "rest"
-                      : recording.order.size() > 0   ? "order"
+                      : !recording.rod.empty()       ? "order' or 'rod"
                                                      : nullptr;
   if (!array) return;
   throw Error(

@@ -31,7 +31,7 @@ function(physpring_test source)
   string(REPLACE "/" "_" name "${name}")
   add_executable(${name} ${source} ${test_SUPPORT})
   target_link_libraries(${name} PRIVATE
-    physpring_options physpring_test_support ${test_LIBS} GTest::gtest_main)
+    physpring_options physpring_test_support ${test_LIBS} GTest::gmock GTest::gtest_main)
   physpring_test_options(${name})
   target_precompile_headers(${name} REUSE_FROM physpring_test_headers)
   gtest_discover_tests(${name}

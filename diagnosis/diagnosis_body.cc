@@ -30,7 +30,7 @@ constexpr double kStart = 8;  // sub-steps a frame; the fit looks for a better s
 // Springs of equal axial stiffness and of their reference lengths, equal dashpots.
 SpringMassSystem MakeAlike(const SpringMassSystem& system) {
   SpringMassSystem alike = system;
-  alike.rest_length = SpringLengths(system.springs, system.position, system.order);
+  alike.rest_length = SpringLengths(system.springs, system.position, system.rod);
   alike.stiffness = alike.rest_length.cwiseInverse();
   alike.dashpot.setOnes();
   return alike;
@@ -47,7 +47,7 @@ SpringMassSystem SmoothlyAs(const SpringMassSystem& trained, const SpringMassSys
 Recording WithShapeOf(const SpringMassSystem& system, const Recording& recording) {
   Recording shaped = recording;
   shaped.rest = system.position;
-  shaped.order = system.order;
+  shaped.rod = system.rod;
   shaped.mass = system.mass.sum();
   return shaped;
 }
@@ -70,7 +70,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   trained.base = SmoothlyAs(trained.base, own.base, recording);
   std::vector<DiagnosisBody> bodies = {own};
   TrainOptions options;
-  if (twin.order.size() == 0) {
+  if (twin.rod.empty()) {
     options.neighbours.assign(std::begin(kNeighbours), std::end(kNeighbours));
   }
   options.cone = own.base.contact.surface.cone;
@@ -92,7 +92,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
 }
 
 bool IsSolid(const SpringMassSystem& system) {
-  if (system.order.size() > 0) return false;
+  if (!system.rod.empty()) return false;
   std::vector<Eigen::Matrix3d> spread(system.position.cols(), Eigen::Matrix3d::Zero());
   for (const auto& [a, b] : system.springs) {
     const Eigen::Vector3d d = system.position.col(b) - system.position.col(a);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "exporter/mesh_place.h"
@@ -27,28 +26,17 @@ std::string ShortNumbers(const Values& values) {
   return text;
 }
 
-// Nodes along the rod: a node's place is the mean of its members'.
-std::vector<int> NodesAlongRod(const LevelPlan& plan) {
-  const int count = plan.system().node_count();
-  const std::vector<int> node_of = NodesOfParticles(*plan.twin, plan.level);
-  Eigen::VectorXd place = Eigen::VectorXd::Zero(count), members = Eigen::VectorXd::Zero(count);
-  for (std::size_t i = 0; i < node_of.size(); ++i) {
-    place[node_of[i]] += plan.twin->order[static_cast<Eigen::Index>(i)];
-    members[node_of[i]] += 1;
-  }
-  place = place.cwiseQuotient(members);
-  std::vector<int> nodes(static_cast<std::size_t>(count));
-  std::iota(nodes.begin(), nodes.end(), 0);
-  std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return place[a] < place[b]; });
-  return nodes;
-}
-
+// A tendon along each way from an end or a joint to the next one.
 void AddRod(const LevelPlan& plan, const Picture& picture, XmlElement* mujoco) {
-  XmlElement* spatial = AddElement(
-      Section(mujoco, "tendon"), "spatial",
-      {{"name", plan.name + "_rod"}, {"width", Number(picture.radius)}, {"rgba", kColour}});
-  for (const int node : NodesAlongRod(plan)) {
-    AddElement(spatial, "site", {{"site", plan.Body(node)}});
+  const Rod rod = RodOfNodes(plan.system().rod, plan.system().node_count());
+  std::string name = plan.name + "_rod";
+  int count = 0;
+  for (const std::vector<int>& way : RodWays(rod)) {
+    XmlElement* spatial =
+        AddElement(Section(mujoco, "tendon"), "spatial",
+                   {{"name", name}, {"width", Number(picture.radius)}, {"rgba", kColour}});
+    for (const int node : way) AddElement(spatial, "site", {{"site", plan.Body(node)}});
+    name = fmt::format("{}_rod{}", plan.name, ++count);
   }
 }
 
@@ -95,7 +83,7 @@ Picture MakePicture(const Twin& twin, const std::string& mesh_file) {
     return picture;
   }
   const double spacing = Spacing(nodes), contact_radius = system.contact_radius.mean();
-  picture.rod = twin.order.size() > 0;
+  picture.rod = !twin.rod.empty();
   if (picture.rod) {
     picture.radius = std::clamp(contact_radius, 0.1 * spacing, 0.5 * spacing);
   } else if (IsSheet(nodes)) {

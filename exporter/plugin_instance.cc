@@ -45,6 +45,15 @@ void AddLists(const SpringMassSystem& system, NumberRole role, XmlElement* insta
   }
 }
 
+// Edges only where not all columns follow each other by their arc lengths.
+void AddRodKeys(const Rod& rod, XmlElement* instance) {
+  AddConfig(instance, kAttrOrder, Numbers(rod.arc));
+  if (rod.edges == PlainRod(rod.arc).edges) return;
+  std::vector<int> ends;
+  for (const auto& [a, b] : rod.edges) ends.insert(ends.end(), {a, b});
+  AddConfig(instance, kAttrRod, Numbers(ends));
+}
+
 void AddSpringKeys(const LevelPlan& plan, XmlElement* instance) {
   const SpringMassSystem& system = plan.system();
   AddConfig(instance, kAttrNodes, std::to_string(system.node_count()));
@@ -56,7 +65,7 @@ void AddSpringKeys(const LevelPlan& plan, XmlElement* instance) {
   if (!plan.plugin_effects.empty()) {
     AddConfig(instance, kAttrEffects, EffectsToJson(plan.plugin_effects));
   }
-  if (system.order.size() > 0) AddConfig(instance, kAttrOrder, Numbers(system.order));
+  if (!system.rod.empty()) AddRodKeys(system.rod, instance);
   AddConfig(instance, kAttrControllerVelocity, plan.twin->controller_velocity ? "1" : "0");
   const ControllerMask& late = plan.twin->late;
   if (!late.empty()) {

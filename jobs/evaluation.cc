@@ -55,7 +55,7 @@ EvaluatedRecording EvaluateRecording(const Twin& twin, const RecordingEntry& ent
   EvaluatedRecording evaluated;
   evaluated.path = entry.path;
   evaluated.recording = std::move(recording);
-  evaluated.published_l1 = entry.published_l1 || evaluated.recording.order.size() > 0;
+  evaluated.published_l1 = entry.published_l1 || !evaluated.recording.rod.empty();
   ExpectSameObject(twin, evaluated.recording);
   const Twin held = HeldAsIn(&evaluated.recording, twin);
   WarnOfOddNumbering(held, entry.path, &evaluated.recording);

@@ -115,9 +115,20 @@ void ReadContact(const Attributes& attributes, Level* level) {
   }
 }
 
+RodEdges ReadRodEdges(const Attributes& attributes, Eigen::Index columns) {
+  try {
+    return EdgesOfEnds(attributes.Integers(kAttrRod), columns);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: attribute 'rod' {}", attributes.where(), error.what()));
+  }
+}
+
 void ReadEffects(const Attributes& attributes, SpringMassSystem* system) {
   if (attributes.Has(kAttrOrder)) {
-    system->order = attributes.Each(kAttrOrder, system->position.cols());
+    system->rod = PlainRod(attributes.Each(kAttrOrder, system->position.cols()));
+  }
+  if (attributes.Has(kAttrRod)) {
+    system->rod.edges = ReadRodEdges(attributes, system->rod.arc.size());
   }
   if (attributes.Has(kAttrEffects)) {
     system->effects = EffectsFromJson(attributes.Text(kAttrEffects),

@@ -75,7 +75,7 @@ SpringsModel::SpringsModel(const mjModel* model, int instance)
 
 const std::vector<const char*>& Springs::AttributeNames() {
   static const std::vector<const char*> names = WithLevelNumbers(
-      {kAttrNodes, kAttrControllers, kAttrSprings, kAttrOrder, kAttrEffects, kAttrSubstep,
+      {kAttrNodes, kAttrControllers, kAttrSprings, kAttrOrder, kAttrRod, kAttrEffects, kAttrSubstep,
        kAttrControllerVelocity, kAttrReleased, kAttrCone},
       {NumberRole::kSprings, NumberRole::kSurface, NumberRole::kObject, NumberRole::kReach});
   return names;

@@ -137,7 +137,7 @@ RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& kn
   }
   Recording recording = WithParticles(clouds, CarryOver(known, clouds), known.rest);
   recording.rest_given = true;
-  recording.order = known.order;
+  recording.rod = known.rod;
   return Register(recording);
 }
 

@@ -241,7 +241,7 @@ RegisteredMarkers RegisterMarkers(const Recording& clouds, bool rod) {
   if (rod && !LostFrom(followed)) {
     markers = markers(Eigen::all, AlongRod(OrderOf(followed.recording), markers.cols())).eval();
     followed = Follow(clouds, markers);
-    followed.recording.order = OrderOf(followed.recording);
+    followed.recording.rod = PlainRod(OrderOf(followed.recording));
   }
   RegisteredMarkers registered;
   registered.distance = followed.distance;

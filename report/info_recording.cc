@@ -104,8 +104,11 @@ std::string DescribeControllers(const Recording& recording) {
   return fmt::format("{}, one for each time that one holds: {}", text, fmt::join(parts, ", "));
 }
 
-double RodLength(const Recording& recording) {
-  return recording.order.maxCoeff() - recording.order.minCoeff();
+std::string DescribeRod(const Rod& rod) {
+  const int joints = RodJoints(rod);
+  std::string text = fmt::format("{:.3f} m long", RodLength(rod));
+  if (joints > 0) text += fmt::format(" in all, {} {}", joints, joints == 1 ? "joint" : "joints");
+  return text;
 }
 
 Eigen::Index PointColumns(const std::vector<Points>& frames) {
@@ -148,7 +151,7 @@ std::string DescribeRecording(const Recording& recording) {
                       : "at rest");
   }
   line("rest shape", recording.rest_given ? "given" : "frame 0");
-  if (recording.order.size() > 0) line("rod", fmt::format("{:.3f} m long", RodLength(recording)));
+  if (!recording.rod.empty()) line("rod", DescribeRod(recording.rod));
   line("mass", fmt::format("{:g} kg", recording.mass));
   line("gravity", fmt::format("{:g} {:g} {:g} m/s^2", recording.gravity.x(), recording.gravity.y(),
                               recording.gravity.z()));
@@ -180,7 +183,8 @@ Json RecordingToJson(const Recording& recording) {
           {"size_m", ToJson(measured.extent)},
           {"largest_displacement_m", measured.largest_displacement},
           {"rest_given", recording.rest_given},
-          {"rod_length_m", recording.order.size() > 0 ? Json(RodLength(recording)) : Json(nullptr)},
+          {"rod_length_m", recording.rod.empty() ? Json(nullptr) : Json(RodLength(recording.rod))},
+          {"rod_joints", RodJoints(recording.rod)},
           {"mass_kg", recording.mass},
           {"gravity_m_s2", ToJson(recording.gravity)},
           {"ground", recording.ground ? ToJson(*recording.ground) : Json(nullptr)},

@@ -127,6 +127,13 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
   return json;
 }
 
+std::string RodInWords(const Rod& rod) {
+  if (rod.empty()) return "";
+  const int joints = RodJoints(rod);
+  if (joints == 0) return ", a rod";
+  return fmt::format(", a rod with {} {}", joints, joints == 1 ? "joint" : "joints");
+}
+
 }  // namespace
 
 std::string DescribeScales(const Twin& twin) {
@@ -154,8 +161,8 @@ std::string DescribeTwin(const Twin& twin) {
       "ground       {}\n"
       "seed         {}\n"
       "options      {}\n",
-      twin.points, twin.interior, twin.levels[0].system.controllers,
-      twin.order.size() > 0 ? ", a rod" : "", DescribeTraining(twin),
+      twin.points, twin.interior, twin.levels[0].system.controllers, RodInWords(twin.rod),
+      DescribeTraining(twin),
       twin.controller_velocity ? "dashpots feel their velocity"
                                : "dashpots take them as standing still (PhysTwin)",
       twin.ground.known ? DescribeGround(twin.ground.plane)
@@ -185,7 +192,8 @@ Json TwinToJson(const Twin& twin) {
           {"points", twin.points},
           {"interior", twin.interior},
           {"controllers", twin.levels[0].system.controllers},
-          {"rod", twin.order.size() > 0},
+          {"rod", !twin.rod.empty()},
+          {"rod_joints", RodJoints(twin.rod)},
           {"fps", twin.fps},
           {"gravity_m_s2", std::vector<double>(twin.gravity.begin(), twin.gravity.end())},
           {"ground", ground},

@@ -49,8 +49,10 @@ def parameters_between(markers, between, gaps):
 
 
 def take_arrays(arrays, frames, mass):
-    """A recording's file: float32 arrays of points, and what all of these cables have."""
-    arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
+    """A recording's file: arrays of points or lengths in float32, whole numbers as they are, and what
+    all of these cables have."""
+    arrays = {name: np.asarray(array, np.int32 if np.asarray(array).dtype.kind == "i" else np.float32)
+              for name, array in arrays.items()}
     arrays.update(fps=np.float64(FPS), gravity=np.array(GRAVITY), train_frames=np.int32(frames))
     if mass is not None:
         arrays["mass"] = np.float64(mass)

@@ -7,9 +7,10 @@ branches at 100 Hz, dataset/BDLO1 to BDLO6, also BDLO1_mid_clamp and BDLO3_mid_c
 eval/*.pkl, each x, y, z of 500 frames, markers within frames, in metres with y up. The files do not
 say where branches begin: `CABLES` has it from scripts/DEFT_train.py. Held markers are `controllers`,
 the others `points`; particles between neighbours along a branch, on a smooth line, are `interior`.
-`rest` is flat, with straight branches of the mean lengths and angles of the files to fit. Frame 0 is
-the second of the file, the first gives the initial velocity. train/ is to be fitted, eval/ is held
-out; files of one take have one number. Needs Python 3.9 and numpy; runs no code that a pickle names."""
+`rod` says which follow each other, `rest` is flat, with straight branches of the mean lengths and
+angles of the files to fit. Frame 0 is the second of the file, the first gives the initial velocity.
+train/ is to be fitted, eval/ is held out; files of one take have one number. Needs Python 3.9 and
+numpy; runs no code that a pickle names."""
 
 import re
 import sys
@@ -56,6 +57,22 @@ class Cable:
     def gaps(self, branch):
         """Those that have particles between: not those of which both ends are held."""
         return [i for i, ends in enumerate(zip(branch, branch[1:])) if not set(ends) <= set(self.held)]
+
+    def edges(self, between):
+        """Which columns of points, interior and controllers follow each other along a branch."""
+        column = {number: i for i, number in enumerate(self.free)}
+        inside = [(number, i) for number, branch in enumerate(self.branches) for i in self.gaps(branch)]
+        first = {gap: len(self.free) + between * i for i, gap in enumerate(inside)}
+        hands = len(self.free) + between * len(inside)
+        column.update((number, hands + i) for i, number in enumerate(self.held))
+        edges = []
+        for number, branch in enumerate(self.branches):
+            for i in range(len(branch) - 1):
+                gap = first.get((number, i))
+                way = [column[branch[i]], *([] if gap is None else range(gap, gap + between)),
+                       column[branch[i + 1]]]
+                edges.extend(zip(way, way[1:]))
+        return edges
 
     def base(self, number):
         """The branch that another one begins on, and where on it."""
@@ -119,7 +136,8 @@ def recording_of(cable, frames, rest, between, mass):
     before = np.concatenate([frames[0, cable.free], *befores])
     velocity = (np.concatenate([frames[1, cable.free], interior]) - before) * FPS
     return take_arrays({"points": frames[1:, cable.free], "controllers": frames[1:, cable.held],
-                        "interior": interior, "velocity": velocity, "rest": rest},
+                        "interior": interior, "velocity": velocity, "rest": rest,
+                        "rod": cable.edges(between)},
                        len(frames) - 1, mass)
 
 

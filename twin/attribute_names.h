@@ -10,6 +10,7 @@ inline constexpr const char* kAttrNodes = "nodes";
 inline constexpr const char* kAttrControllers = "controllers";
 inline constexpr const char* kAttrSprings = "springs";
 inline constexpr const char* kAttrOrder = "order";
+inline constexpr const char* kAttrRod = "rod";
 inline constexpr const char* kAttrEffects = "effects";
 inline constexpr const char* kAttrSubstep = "substep";
 inline constexpr const char* kAttrControllerVelocity = "controller_velocity";

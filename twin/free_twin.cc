@@ -28,7 +28,7 @@ void DropControllers(SpringMassSystem* system) {
   system->dashpot = keep(system->dashpot);
   system->position = system->position.leftCols(nodes).eval();
   system->controllers = 0;
-  if (system->order.size() > 0) system->order = system->order.head(nodes).eval();
+  system->rod = RodOfNodes(system->rod, nodes);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ Twin WithoutControllers(Twin twin) {
     }
   }
   const int nodes = twin.levels[0].system.node_count();
-  if (twin.order.size() > 0) twin.order = twin.order.head(nodes).eval();
+  twin.rod = RodOfNodes(twin.rod, nodes);
   twin.training_state.clear();
   twin.posterior = {};
   return twin;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "twin/local_motion.h"
-#include "twin/neighbours.h"
+#include "twin/recorded_rod.h"
 
 namespace physpring {
 namespace {
@@ -51,18 +51,6 @@ void FillReleased(const NpzFields& fields, Recording* recording) {
   }
 }
 
-// Between those of the two particles that are nearest to it in frame 0, m.
-double ArcLengthAt(const Recording& recording, const Eigen::Vector3d& place) {
-  const NeighbourSearch search(Points(recording.start.leftCols(recording.particle_count())));
-  double sum = 0, weights = 0;
-  for (const Neighbour& one : search.Nearest(place, 2)) {
-    const double weight = 1 / (one.distance + 1e-9);
-    sum += weight * recording.order[one.index];
-    weights += weight;
-  }
-  return sum / weights;
-}
-
 // Its columns of start, rest and order, where the grasp does not begin in frame 0.
 void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording& read, int column,
                     Recording* recording) {
@@ -78,7 +66,7 @@ void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording
   recording->start.col(particles + column) = *place;
   recording->rest.col(particles + column) =
       *LocalMotion(start, read.rest.leftCols(read.point_count())).Move(*place);
-  if (read.order.size() > 0) recording->order[particles + column] = ArcLengthAt(read, *place);
+  if (!read.rod.empty()) recording->rod.arc[particles + column] = ArcLengthAt(read, *place);
 }
 
 // The path of a controller while it holds; before and after it stands still.
@@ -129,12 +117,13 @@ void SplitGrasps(const NpzFields& fields, Recording* recording) {
   for (Points* shape : {&recording->start, &recording->rest}) {
     shape->conservativeResize(3, particles + count);
   }
-  if (read.order.size() > 0) recording->order.conservativeResize(particles + count);
+  if (!read.rod.empty()) recording->rod.arc.conservativeResize(particles + count);
   for (int i = 0; i < count; ++i) {
     const Grasp& grasp = grasps[static_cast<std::size_t>(i)];
     SetPath(grasp, read, i, recording);
     if (grasp.first > 0) PlaceLateGrasp(fields, grasp, read, i, recording);
   }
+  KeepHoldingControllers(*recording, &recording->rod);
   FindShapesWhenHeld(recording);
 }
 

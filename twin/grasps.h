@@ -29,7 +29,7 @@ std::vector<Grasp> AllGrasps(const Recording& recording);
 void ReadControllers(NpzFields& fields, const std::string& frames, Recording* recording);
 
 // Makes a controller of each grasp: first the first ones of the controllers, in their order, then
-// the others. `start`, `rest`, `order` and `force` get their columns. Throws Error where no point
+// the others. `start`, `rest`, `rod` and `force` get their columns. Throws Error where no point
 // is seen when a grasp begins.
 void SplitGrasps(const NpzFields& fields, Recording* recording);
 

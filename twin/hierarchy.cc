@@ -47,20 +47,12 @@ Points AverageOverMembers(const Twin& twin, int level, const Points& particles) 
   return sum.array().rowwise() / total.transpose().array();
 }
 
-void SpreadOrder(Twin* twin) {
-  if (twin->order.size() == 0) return;
-  const int particles = twin->levels[0].system.node_count();
+void SpreadRod(Twin* twin) {
   for (std::size_t n = 0; n < twin->levels.size(); ++n) {
     SpringMassSystem& system = twin->levels[n].system;
-    system.order = Eigen::VectorXd::Zero(system.position.cols());
-    system.order.tail(system.controllers) = twin->order.tail(system.controllers);
-    const std::vector<int> node = NodesOfParticles(*twin, static_cast<int>(n));
-    Eigen::VectorXd members = Eigen::VectorXd::Zero(system.node_count());
-    for (int i = 0; i < particles; ++i) {
-      system.order[node[i]] += twin->order[i];
-      members[node[i]] += 1;
-    }
-    system.order.head(system.node_count()).array() /= members.array();
+    system.rod = n == 0 ? twin->rod
+                        : CoarseRod(twin->rod, NodesOfParticles(*twin, static_cast<int>(n)),
+                                    system.node_count());
   }
 }
 

@@ -24,9 +24,8 @@ std::vector<int> SurfaceNodes(const Twin& twin, int level);
 // members, whose values are given (3 x free nodes of level 0). Bit for bit the values at level 0.
 Points AverageOverMembers(const Twin& twin, int level, const Points& particles);
 
-// Gives the systems of all levels their arc lengths, from those of level 0: a node's is the mean of
-// its members'. Nothing if the twin is no rod.
-void SpreadOrder(Twin* twin);
+// Gives the systems of all levels the twin's rod, if it is one (CoarseRod).
+void SpreadRod(Twin* twin);
 
 }  // namespace physpring
 

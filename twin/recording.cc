@@ -15,11 +15,13 @@
 #include "twin/checks/outliers.h"
 #include "twin/checks/plausibility.h"
 #include "twin/checks/start_velocity.h"
+#include "twin/column_names.h"
 #include "twin/error.h"
 #include "twin/grasps.h"
 #include "twin/npz.h"
 #include "twin/npz_fields.h"
 #include "twin/quote.h"
+#include "twin/recorded_rod.h"
 #include "twin/recording_clocks.h"
 #include "twin/unseen_points.h"
 
@@ -27,11 +29,12 @@ namespace physpring {
 namespace {
 
 constexpr double kStrongestGravity = 1000;  // m/s^2
-constexpr std::array<std::string_view, 18> kArrays{
-    "points",  "controllers", "fps",          "mass",       "gravity",
-    "ground",  "interior",    "rest",         "velocity",   "order",
-    "surface", "track",       "train_frames", "timestamps", "controller_timestamps",
-    "force",   "held",        "object"};
+constexpr std::array<std::string_view, 19> kArrays{
+    "points",   "controllers",  "fps",        "mass",
+    "gravity",  "ground",       "interior",   "rest",
+    "velocity", "order",        "rod",        "surface",
+    "track",    "train_frames", "timestamps", "controller_timestamps",
+    "force",    "held",         "object"};
 constexpr double kSmallestDistance = 1e-7;            // m, between two particles
 constexpr double kAssumedMass = 0.1;                  // kg
 constexpr double kLeastMass = 1e-9, kMostMass = 1e6;  // kg
@@ -68,7 +71,8 @@ void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording
 
 // Whether nothing is said of points that are followed.
 bool HasCloudsAlone(const NpzFields& fields) {
-  constexpr std::array kOfPoints{"points", "interior", "rest", "velocity", "order", "object"};
+  constexpr std::array kOfPoints{"points", "interior", "rest",  "velocity",
+                                 "order",  "rod",      "object"};
   return fields.Has("surface") && std::none_of(kOfPoints.begin(), kOfPoints.end(),
                                                [&](const char* name) { return fields.Has(name); });
 }
@@ -160,21 +164,12 @@ void ReadParticles(NpzFields& fields, Recording& recording) {
 
   recording.velocity = Points::Zero(3, recording.particle_count());
   if (fields.Has("velocity")) recording.velocity = fields.Positions("velocity", "N+M");
-  if (fields.Has("order")) recording.order = fields.Vector("order", "N+M+C");
   if (fields.Has("object")) {
     const std::vector<int> declared = fields.Ints("object", {"N+M"});
     recording.object = Eigen::VectorXi::Map(declared.data(), std::ssize(declared));
   }
   recording.rest_given = fields.Has("rest");
   if (recording.rest_given) recording.rest = fields.Positions("rest", "N+M+C");
-}
-
-// "point 3", "interior particle 0", "controller 1"
-std::string NameOfColumn(const Recording& recording, Eigen::Index column) {
-  if (column < recording.point_count()) return fmt::format("point {}", column);
-  column -= recording.point_count();
-  if (column < recording.interior_count()) return fmt::format("interior particle {}", column);
-  return fmt::format("controller {}", column - recording.interior_count());
 }
 
 // Fails if two columns are closer than kSmallestDistance: the rest length between them would be
@@ -209,7 +204,7 @@ std::string WarnOfPlaced(const std::string& path, int points, const std::vector<
                      placed.size() > kShown ? ", ..." : "");
 }
 
-void SetStart(const NpzFields& fields, const std::string& path, Recording& recording) {
+void SetStart(NpzFields& fields, const std::string& path, Recording& recording) {
   recording.start.resize(3, recording.particle_count() + recording.controller_count());
   recording.start << recording.points[0], recording.interior, recording.controllers[0];
   const std::vector<int> placed = PlaceUnseenPoints(recording);
@@ -219,8 +214,9 @@ void SetStart(const NpzFields& fields, const std::string& path, Recording& recor
   ExpectDistinct(fields, recording, "points", recording.start);
   if (recording.rest_given) ExpectDistinct(fields, recording, "rest", recording.rest);
   if (!recording.rest_given) recording.rest = recording.start;
-  if (recording.order.size() > 0) {
-    ExpectDistinct(fields, recording, "order", recording.order.transpose());
+  ReadRod(fields, &recording);
+  if (fields.Has("order")) {
+    ExpectDistinct(fields, recording, "order", recording.rod.arc.transpose());
   }
 }
 
@@ -257,6 +253,7 @@ void Check(const std::string& path, bool velocity_given, Recording& recording) {
   const std::string left_out = LeaveOutOutliers(path, &recording);
   if (!left_out.empty()) recording.warnings.push_back(left_out);
   TellObjects(path, recording);
+  CutRodBetweenObjects(&recording);
   if (!velocity_given) SetVelocity(path, recording);
   for (const std::string& oddity : FindOddities(recording)) {
     recording.warnings.push_back(fmt::format("{}: {}", path, oddity));

@@ -12,6 +12,7 @@
 
 #include "twin/npz.h"
 #include "twin/points.h"
+#include "twin/rod.h"
 
 namespace physpring {
 
@@ -43,7 +44,7 @@ struct Recording {
   Points rest;                  // 3 x (N+M+C), m: stress-free positions; default: frame 0
   bool rest_given = false;      // false: `rest` is frame 0
   Points velocity;              // 3 x (N+M), m/s: at frame 0; default: checks/start_velocity.h
-  Eigen::VectorXd order;        // (N+M+C): arc length along a rod, m; empty if not a rod
+  Rod rod;                      // of N+M+C columns; empty if not a rod
   std::vector<Points> surface;  // T frames of 3 x S, m, unlabelled surface points; may be empty
   std::vector<Points> track;    // T frames of 3 x K, m, key points; empty: `points` are tracked
 

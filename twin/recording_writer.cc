@@ -5,6 +5,7 @@
 
 #include "twin/error.h"
 #include "twin/npz_fields.h"
+#include "twin/recorded_rod.h"
 #include "twin/recording.h"
 
 namespace physpring {
@@ -55,9 +56,7 @@ Npz StoreRecording(const Recording& recording) {
   if (recording.interior.cols() > 0) arrays["interior"] = StorePositions(recording.interior);
   if (recording.rest_given) arrays["rest"] = StorePositions(recording.rest);
   if (!recording.velocity.isZero(0)) arrays["velocity"] = StorePositions(recording.velocity);
-  if (recording.order.size() > 0) {
-    arrays["order"] = NpzArray::Doubles({ExtentOf(recording.order.size())}, recording.order.data());
-  }
+  StoreRod(recording, &arrays);
   if (recording.object.size() > 0) {
     const Eigen::VectorXi declared = recording.object.head(recording.particle_count());
     arrays["object"] = NpzArray::Ints({ExtentOf(declared.size())}, declared.data());

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <vector>
 
+#include "twin/hierarchy.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
+#include "twin/recorded_rod.h"
 
 namespace physpring {
 namespace {
@@ -16,11 +18,9 @@ namespace {
 constexpr double kSamePlace = 0.5;        // of the particles' spacing
 constexpr double kShortestSpring = 1e-3;  // of it
 
-void MoveGrasp(const MovedGrasp& moved, double arc_length, double shortest,
-               SpringMassSystem* system) {
+void MoveGrasp(const MovedGrasp& moved, double shortest, SpringMassSystem* system) {
   const int nodes = system->node_count(), column = nodes + moved.controller;
   system->position.col(column) = moved.place;
-  if (system->order.size() > 0) system->order[column] = arc_length;
   std::vector<int> springs;  // the shortest one first
   for (int e = 0; e < system->spring_count(); ++e) {
     if (std::max(system->springs[e][0], system->springs[e][1]) == column) springs.push_back(e);
@@ -33,6 +33,16 @@ void MoveGrasp(const MovedGrasp& moved, double arc_length, double shortest,
   for (std::size_t i = 0; i < springs.size(); ++i) {
     system->springs[springs[i]] = {static_cast<int>(nearest[i].index), column};
     system->rest_length[springs[i]] = std::max(nearest[i].distance, shortest);
+  }
+}
+
+// A controller that holds elsewhere is where the recording says, if it knows the same rod; else it
+// is no part of the rod.
+void MoveOnRod(const Recording& recording, int column, Rod* rod) {
+  if (recording.rod.arc.size() == rod->arc.size()) {
+    *rod = recording.rod;
+  } else {
+    TakeOut(column, rod);
   }
 }
 
@@ -74,18 +84,22 @@ void MoveGrasps(const std::vector<MovedGrasp>& moved, const Recording& recording
   const double spacing = MedianSpacing(Points(twin->levels[0].system.position.leftCols(particles)));
   for (const MovedGrasp& one : moved) {
     const int column = particles + one.controller;
-    const double arc_length = recording.order.size() > 0 ? recording.order[column] : 0;
-    if (twin->order.size() > 0) twin->order[column] = arc_length;
+    if (!twin->rod.empty()) MoveOnRod(recording, column, &twin->rod);
     for (TwinLevel& level : twin->levels) {
-      MoveGrasp(one, arc_length, kShortestSpring * spacing, &level.system);
+      MoveGrasp(one, kShortestSpring * spacing, &level.system);
     }
   }
+  SpreadRod(twin);
 }
 
 Twin HeldAsIn(Recording* recording, Twin twin) {
   if (twin.TrainingOn(recording->hash)) return twin;
   const auto moved = FindMovedGrasps(twin.levels[0].system.position, *recording);
   MoveGrasps(moved, *recording, &twin);
+  if (recording->held.size() > 0) {
+    KeepHoldingControllers(*recording, &twin.rod);
+    SpreadRod(&twin);
+  }
   for (const MovedGrasp& one : moved) {
     recording->notes.push_back(fmt::format(
         "recording {}: controller {} holds the object {:.3g} m from where it held it in the "

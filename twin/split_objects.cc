@@ -90,7 +90,7 @@ Recording PartOf(const Recording& recording, int object) {
   part.start = recording.start(Eigen::all, all);
   part.rest = recording.rest(Eigen::all, all);
   part.velocity = recording.velocity(Eigen::all, own);
-  if (recording.order.size() > 0) part.order = recording.order(all);
+  part.rod = PartOfRod(recording.rod, {all.begin(), all.end()});
   part.surface = CloudsOf(recording, object);
   const Columns keys = KeyPointsOf(recording, object);
   if (keys.empty()) {

@@ -14,6 +14,7 @@
 #include "twin/contact_law.h"
 #include "twin/effects/effect_values.h"
 #include "twin/points.h"
+#include "twin/rod.h"
 
 namespace physpring {
 
@@ -37,8 +38,7 @@ struct SpringMassSystem {
   Eigen::VectorXd dashpot;                  // (springs), N s/m, >= 0
   double drag = 0;                          // 1/s, >= 0: v <- v exp(-h drag)
 
-  // Arc length of nodes and controllers along a rod, m; empty if the body is no rod.
-  Eigen::VectorXd order;
+  Rod rod;  // of nodes and controllers; empty if the body is no rod
   // Physics besides that of springs, drag and contact; they act in this order.
   std::vector<EffectValues> effects;
 

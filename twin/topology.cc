@@ -20,15 +20,21 @@ using Springs = std::set<std::array<int, 2>>;
 constexpr double kCoincident = 1e-7;
 // Groups of nodes further apart than this many times the widest spacing are not one object.
 constexpr double kWidestGap = 5;
+constexpr int kJointReach = 2;  // steps from a joint
+
+Error CoincidentParticles(const std::string& where, int a, int b) {
+  return Error(fmt::format("{}: particles {} and {} are at the same place; keep one of them", where,
+                           std::min(a, b), std::max(a, b)));
+}
+
+Error CoincidentController(const std::string& where, int controller, int particle) {
+  return Error(
+      fmt::format("{}: controller {} and particle {} are at the same place; keep one of "
+                  "them",
+                  where, controller, particle));
+}
 
 void Join(int i, int j, Springs* springs) { springs->insert({std::min(i, j), std::max(i, j)}); }
-
-// Points on a line at their arc lengths: the neighbour search along a rod.
-Points AlongRod(const Eigen::VectorXd& order) {
-  Points line = Points::Zero(3, order.size());
-  line.row(0) = order.transpose();
-  return line;
-}
 
 // Joins every column of `from` (index offset + column) to its nearest columns of `nodes`.
 void JoinNearest(const Points& nodes, const Points& from, int offset, double radius, int least,
@@ -46,15 +52,75 @@ void JoinNearest(const Points& nodes, const Points& from, int offset, double rad
   }
 }
 
-// Joins every node of a rod to the `reach` next ones on either side; the ends of the rod reach as
-// far.
-void JoinAlongRod(const Eigen::VectorXd& order, int nodes, int reach, Springs* springs) {
-  std::vector<int> sorted(nodes);
-  std::iota(sorted.begin(), sorted.end(), 0);
-  std::stable_sort(sorted.begin(), sorted.end(), [&](int i, int j) { return order[i] < order[j]; });
-  for (int i = 0; i < nodes; ++i) {
-    for (int j = i + 1; j <= std::min(i + reach, nodes - 1); ++j) {
-      Join(sorted[i], sorted[j], springs);
+// Joins every node to the `reach` next ones on each way along a rod of nodes alone.
+void JoinAlongRod(const Rod& rod, int reach, Springs* springs) {
+  const std::vector<std::vector<int>> neighbours = RodNeighbours(rod);
+  for (int start = 0; start < std::ssize(neighbours); ++start) {
+    std::set<int> reached = {start};
+    std::vector<int> last = {start};
+    for (int step = 0; step < reach; ++step) {
+      std::vector<int> next;
+      for (int i : last) {
+        for (int j : neighbours[i]) {
+          if (!reached.insert(j).second) continue;
+          next.push_back(j);
+          Join(start, j, springs);
+        }
+      }
+      last = next;
+    }
+  }
+}
+
+// Joins the nodes around each joint to each other, so that the joint keeps its shape: those up to
+// kJointReach steps from it, of each two branches.
+void BraceJoints(const Rod& rod, Springs* springs) {
+  const std::vector<std::vector<int>> neighbours = RodNeighbours(rod);
+  for (int joint = 0; joint < std::ssize(neighbours); ++joint) {
+    if (neighbours[joint].size() < 3) continue;
+    std::vector<std::vector<int>> branches;
+    for (int next : neighbours[joint]) {
+      std::vector<int> branch = {next};
+      for (int before = joint; std::ssize(branch) < kJointReach && neighbours[next].size() == 2;) {
+        const int after = neighbours[next][neighbours[next][0] == before ? 1 : 0];
+        before = next;
+        branch.push_back(next = after);
+      }
+      branches.push_back(branch);
+    }
+    for (std::size_t i = 0; i < branches.size(); ++i) {
+      for (std::size_t j = i + 1; j < branches.size(); ++j) {
+        for (int a : branches[i]) {
+          for (int b : branches[j]) {
+            if (a != b) Join(a, b, springs);
+          }
+        }
+      }
+    }
+  }
+}
+
+Springs SpringsAlong(const Rod& rod, int reach) {
+  Springs springs;
+  JoinAlongRod(rod, reach, &springs);
+  BraceJoints(rod, &springs);
+  return springs;
+}
+
+// Joins every controller to the nodes that are nearest along a rod, or beside it.
+void JoinNearestOnRod(const Rod& rod, const Points& position, int nodes,
+                      const TopologyOptions& options, const std::string& where, Springs* springs) {
+  const RodLengths lengths(rod);
+  for (int c = nodes; c < position.cols(); ++c) {
+    std::vector<Neighbour> near;
+    for (int i = 0; i < nodes; ++i) near.push_back({i, lengths.Between(c, i, position)});
+    std::stable_sort(near.begin(), near.end(), [](const Neighbour& a, const Neighbour& b) {
+      return a.distance < b.distance;
+    });
+    if (near[0].distance < kCoincident) throw CoincidentController(where, c - nodes, near[0].index);
+    for (int i = 0; i < std::min(nodes, options.controller_max_neighbours); ++i) {
+      if (i >= options.min_neighbours && near[i].distance >= options.controller_radius) break;
+      Join(c, near[i].index, springs);
     }
   }
 }
@@ -83,8 +149,7 @@ double WidestSpacing(const Points& nodes, const std::string& where) {
     for (const Neighbour& near : search.Nearest(nodes.col(i), 2)) {
       if (near.index == i) continue;
       if (near.distance < kCoincident) {
-        throw Error(fmt::format("{}: particles {} and {} are at the same place; keep one of them",
-                                where, std::min(i, near.index), std::max(i, near.index)));
+        throw CoincidentParticles(where, i, near.index);
       }
       widest = std::max(widest, near.distance);
     }
@@ -122,15 +187,23 @@ void JoinGroups(const Points& nodes, double widest_spacing, const std::string& w
   }
 }
 
+// The longest edge between nodes; throws where two coincide.
+double LongestEdge(const Rod& rod, const Points& position, const std::string& where) {
+  const RodLengths lengths(rod);
+  double longest = 0;
+  for (const auto& [a, b] : rod.edges) {
+    const double length = lengths.Between(a, b, position);
+    if (length < kCoincident) throw CoincidentParticles(where, a, b);
+    longest = std::max(longest, length);
+  }
+  return longest;
+}
+
 void CheckControllers(const Points& nodes, const Points& controllers, const std::string& where) {
   const NeighbourSearch search(nodes);
   for (int c = 0; c < controllers.cols(); ++c) {
     for (const Neighbour& near : search.Nearest(controllers.col(c), 1)) {
-      if (near.distance >= kCoincident) continue;
-      throw Error(
-          fmt::format("{}: controller {} and particle {} are at the same place; keep one of "
-                      "them",
-                      where, c, near.index));
+      if (near.distance < kCoincident) throw CoincidentController(where, c, near.index);
     }
   }
 }
@@ -138,8 +211,7 @@ void CheckControllers(const Points& nodes, const Points& controllers, const std:
 }  // namespace
 
 std::vector<std::array<int, 2>> BuildSprings(const Points& position, int controllers,
-                                             const Eigen::VectorXd& order,
-                                             const TopologyOptions& options,
+                                             const Rod& rod, const TopologyOptions& options,
                                              const std::string& where) {
   const int nodes = static_cast<int>(position.cols()) - controllers;
   if (nodes < 1 || nodes + controllers < 2) {
@@ -148,22 +220,23 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
                     "particles, or one and a controller",
                     where, nodes, controllers));
   }
-  const bool rod = order.size() > 0;
-  const Points searched = rod ? AlongRod(order) : position;
-  const Points free = searched.leftCols(nodes);
-  const double widest = WidestSpacing(free, where);
   Springs springs;
-  if (rod) {
-    JoinAlongRod(order, nodes, std::max(1, options.max_neighbours / 2), &springs);
-  } else {
+  const Points free = position.leftCols(nodes);
+  if (rod.empty()) {
+    const double widest = WidestSpacing(free, where);
     JoinNearest(free, free, 0, options.radius, options.min_neighbours, options.max_neighbours,
                 &springs);
+    JoinGroups(free, widest, where, &springs);
+    const Points hands = position.rightCols(controllers);
+    CheckControllers(free, hands, where);
+    JoinNearest(free, hands, nodes, options.controller_radius, options.min_neighbours,
+                options.controller_max_neighbours, &springs);
+  } else {
+    const Rod alone = RodOfNodes(rod, nodes);
+    springs = SpringsAlong(alone, std::max(1, options.max_neighbours / 2));
+    JoinGroups(free, LongestEdge(alone, free, where), where, &springs);
+    JoinNearestOnRod(rod, position, nodes, options, where, &springs);
   }
-  JoinGroups(free, widest, where, &springs);
-  const Points hands = searched.rightCols(controllers);
-  CheckControllers(free, hands, where);
-  JoinNearest(free, hands, nodes, options.controller_radius, options.min_neighbours,
-              options.controller_max_neighbours, &springs);
   if (springs.empty()) {
     throw Error(
         fmt::format("{}: no controller is joined to the particle; the search radius for "
@@ -173,13 +246,19 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
   return {springs.begin(), springs.end()};
 }
 
+std::vector<std::array<int, 2>> ChainSprings(const Rod& rod, int nodes) {
+  const Springs springs = SpringsAlong(RodOfNodes(rod, nodes), 1);
+  return {springs.begin(), springs.end()};
+}
+
 Eigen::VectorXd SpringLengths(const std::vector<std::array<int, 2>>& springs,
-                              const Points& position, const Eigen::VectorXd& order) {
+                              const Points& position, const Rod& rod) {
   Eigen::VectorXd length(springs.size());
+  const RodLengths along(rod);
   for (std::size_t e = 0; e < springs.size(); ++e) {
     const auto [a, b] = springs[e];
-    length[e] = order.size() > 0 ? std::abs(order[a] - order[b])
-                                 : (position.col(a) - position.col(b)).norm();
+    length[e] =
+        rod.empty() ? (position.col(a) - position.col(b)).norm() : along.Between(a, b, position);
   }
   return length;
 }

@@ -2,9 +2,9 @@
 // Which nodes are joined by springs.
 //
 // Free nodes: PhysTwin's hybrid search (the nearest max_neighbours within a radius), which with an
-// infinite radius is k nearest neighbours; for rods, the nearest along the arc length. Controllers
-// are joined to their nearest free nodes in the same way, never to each other. Where the radius
-// holds fewer than min_neighbours, that many nearest are taken.
+// infinite radius is k nearest neighbours; for rods, the next ones along it. Controllers are joined
+// to their nearest free nodes in the same way, never to each other. Where the radius holds fewer
+// than min_neighbours, that many nearest are taken.
 #ifndef PHYSPRING_TWIN_TOPOLOGY_H_
 #define PHYSPRING_TWIN_TOPOLOGY_H_
 
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "twin/points.h"
+#include "twin/rod.h"
 
 namespace physpring {
 
@@ -26,20 +27,23 @@ struct TopologyOptions {
 };
 
 // Springs (a, b), a < b, sorted. `position` (3 x (nodes + controllers), m, finite) holds the
-// controllers last. With `order` (arc length of nodes and controllers, m; may be empty) a node's
-// neighbours are the max_neighbours / 2 next ones on either side, and distances are taken along the
-// rod. Groups of nodes that the search leaves apart are joined where they are nearest.
-// Throws Error, beginning with `where`, if there is nothing to join, if two nodes or a controller
-// and a node coincide, or if two groups are so far apart that they cannot be one object (more than
-// 5 times the greatest distance of a node to its nearest neighbour).
+// controllers last. Along a `rod` (may be empty) a node's neighbours are the max_neighbours / 2
+// next ones on each way from it, and distances are taken along it (RodLengths). The two next to a
+// joint on each way are joined to those on the others, so that it keeps its shape. Groups of nodes
+// that the search leaves apart are joined where they are nearest. Throws Error, beginning with
+// `where`, if there is nothing to join, if two nodes or a controller and a node coincide, or if two
+// groups are so far apart that they cannot be one object (more than 5 times the greatest distance
+// of a node to its nearest neighbour).
 std::vector<std::array<int, 2>> BuildSprings(const Points& position, int controllers,
-                                             const Eigen::VectorXd& order,
-                                             const TopologyOptions& options,
+                                             const Rod& rod, const TopologyOptions& options,
                                              const std::string& where);
 
-// Distances (springs), m, in `position`, or along the rod where `order` is given.
+// The springs between nodes of a chain: those that BuildSprings gives with two neighbours.
+std::vector<std::array<int, 2>> ChainSprings(const Rod& rod, int nodes);
+
+// Distances (springs), m, in `position`, or along the rod if there is one.
 Eigen::VectorXd SpringLengths(const std::vector<std::array<int, 2>>& springs,
-                              const Points& position, const Eigen::VectorXd& order);
+                              const Points& position, const Rod& rod);
 
 }  // namespace physpring
 

@@ -47,7 +47,7 @@ struct Twin {
   // What the columns of level 0 are: points, interior particles (as in the recording), controllers.
   int points = 0;
   int interior = 0;
-  Eigen::VectorXd order;  // arc length of level 0's nodes and controllers, m; empty if not a rod
+  Rod rod;                          // of level 0's nodes and controllers; empty if not a rod
   bool controller_velocity = true;  // dashpots feel the controllers' velocity (false: PhysTwin)
   // The controllers that take hold within the recording, so hold nothing at its start.
   ControllerMask late;

@@ -17,6 +17,7 @@
 #include "twin/npz.h"
 #include "twin/npz_fields.h"
 #include "twin/quote.h"
+#include "twin/recorded_rod.h"
 #include "twin/twin.h"
 
 namespace physpring {
@@ -129,6 +130,21 @@ std::string StoreMeta(const Twin& twin, const std::string& path) {
   return meta.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
+// `rod` only where not all columns follow each other by their arc lengths.
+void StoreRod(const Rod& rod, Npz& arrays) {
+  if (rod.empty()) return;
+  arrays["order"] = StoreVector(rod.arc);
+  if (rod.edges == PlainRod(rod.arc).edges) return;
+  arrays["rod"] = StoreRodEdges(rod.edges);
+}
+
+Rod ReadRod(NpzFields* fields) {
+  if (!fields->Has("order")) return {};
+  const Eigen::VectorXd arc = fields->Vector("order", "nodes+controllers");
+  if (!fields->Has("rod")) return PlainRod(arc);
+  return {arc, ReadRodEdges(*fields, arc.size())};
+}
+
 Npz StoreTwin(const Twin& twin, const std::string& path) {
   Npz arrays;
   arrays["meta"] = NpzArray::Text(StoreMeta(twin, path));
@@ -139,7 +155,7 @@ Npz StoreTwin(const Twin& twin, const std::string& path) {
     arrays["ground"] =
         plane ? NpzArray::Doubles({4}, plane->data()) : NpzArray::Doubles({0}, nullptr);
   }
-  if (twin.order.size() > 0) arrays["order"] = StoreVector(twin.order);
+  StoreRod(twin.rod, arrays);
   if (!twin.late.empty()) {
     const std::vector<int> late(twin.late.begin(), twin.late.end());
     arrays["late"] = NpzArray::Ints({late.size()}, late.data());
@@ -346,8 +362,8 @@ Twin ParseTwin(const Npz& arrays, const std::string& path) {
   twin.gravity = fields.Vector("gravity", "3");
   if (fields.Has("ground")) twin.ground = ReadTrainedGround(&fields);
   fields.SetExtent("nodes+controllers", ExtentOf(twin.levels[0].system.position.cols()));
-  if (fields.Has("order")) twin.order = fields.Vector("order", "nodes+controllers");
-  SpreadOrder(&twin);
+  twin.rod = ReadRod(&fields);
+  SpreadRod(&twin);
   if (fields.Has("late")) twin.late = ReadLate(&fields, controllers);
   if (fields.Has("linear/mean")) twin.linear = ReadLinear(&fields, twin.points, controllers);
 

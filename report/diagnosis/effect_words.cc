@@ -37,7 +37,7 @@ HeldEnds FindHeldEnds(const SpringMassSystem& system, const Eigen::VectorXd& alo
 }
 
 bool IsLong(const SpringMassSystem& system) {
-  if (system.order.size() > 0) return true;
+  if (!system.rod.empty()) return IsPlain(system.rod);
   const double across = PlaceAcross(system).colwise().norm().maxCoeff();
   const Eigen::Vector3d size =
       system.position.rowwise().maxCoeff() - system.position.rowwise().minCoeff();

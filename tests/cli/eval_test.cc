@@ -183,7 +183,7 @@ TEST_F(Eval, LeavesFramesWithoutDataOutAndCountsThem) {
 }
 
 TEST_F(Eval, GivesThePublishedMeasureOfRods) {
-  recording_.order = Eigen::VectorXd::LinSpaced(42, 0, 1);
+  recording_.rod = PlainRod(Eigen::VectorXd::LinSpaced(42, 0, 1));
   WriteRecording(recording_, swing_);
   const Json json = EvalToJson({swing_});
   EXPECT_LT(json["levels"][0]["published_l1"], 1e-6);

@@ -51,7 +51,7 @@ TEST(IsSolid, ASheetIsNotEvenIfItIsCurved) {
 
 TEST(IsSolid, ARodOfKnownOrderIsNot) {
   SpringMassSystem bundle = Grid(3, 12, 3);
-  bundle.order = bundle.position.row(1);
+  bundle.rod = PlainRod(bundle.position.row(1));
   EXPECT_FALSE(IsSolid(bundle));
 }
 
@@ -59,8 +59,7 @@ TEST(IsSolid, ARodOfKnownOrderIsNot) {
 Twin BendingChain() {
   Twin twin;
   SpringMassSystem system = Grid(1, 6, 1);
-  system.order.resize(6);
-  system.order << 0, 2, 4, 5, 3, 1;
+  system.rod = PlainRod(Eigen::Vector<double, 6>(0, 2, 4, 5, 3, 1));
   system.springs = {{0, 5}, {5, 1}, {1, 4}, {4, 2}, {2, 3}};
   system.effects = {{"bending", Eigen::VectorXd::Constant(1, 1e-3)}};
   twin.levels.push_back({system, {}, 0});
@@ -79,7 +78,7 @@ TEST(IsBendingChain, OneWithoutBendingOrWithLongerSpringsIsNot) {
   system.springs.push_back({0, 1});
   EXPECT_FALSE(IsBendingChain(system));
   system = BendingChain().levels[0].system;
-  system.order.resize(0);
+  system.rod = {};
   EXPECT_FALSE(IsBendingChain(system));
 }
 

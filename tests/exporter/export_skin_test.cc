@@ -4,12 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <fstream>
+#include <set>
 
 #include "rollout/mujoco_log.h"
 #include "tests/support/exported_folder.h"
 #include "tests/support/small_twin.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/error.h"
+#include "twin/hierarchy.h"
 
 namespace physpring {
 namespace {
@@ -112,7 +114,8 @@ TEST(ExportSkin, AMeshMustBeWhereTheTwinIs) {
 
 TEST(ExportSkin, ARodIsDrawnAlongItsOrder) {
   Twin twin = SmallTwin(2);
-  twin.order = Eigen::VectorXd::LinSpaced(42, 0, 1);
+  twin.rod = PlainRod(Eigen::VectorXd::LinSpaced(42, 0, 1));
+  SpreadRod(&twin);
   const ExportedFolder folder(twin, {});
   const ModelPtr model = folder.Load("scene.xml");
   EXPECT_EQ(model->nskin, 0);
@@ -120,6 +123,23 @@ TEST(ExportSkin, ARodIsDrawnAlongItsOrder) {
   ASSERT_EQ(rod, model->ntendon - 1);  // after the springs
   EXPECT_EQ(model->tendon_num[rod], 40);
   EXPECT_EQ(model->tendon_stiffness[rod], 0);
+}
+
+TEST(ExportSkin, ARodWithBranchesIsDrawnAlongEach) {
+  Twin twin = SmallTwin(2);
+  RodEdges edges;
+  for (int i = 1; i < 42; ++i) edges.push_back({i == 30 ? 10 : i - 1, i});
+  twin.rod = RodOfEdges(edges, twin.levels[0].system.position);
+  SpreadRod(&twin);
+  const ExportedFolder folder(twin, {});
+  const ModelPtr model = folder.Load("scene.xml");
+  std::multiset<int> sites;
+  for (const char* name : {"block_rod", "block_rod1", "block_rod2"}) {
+    const int tendon = Id(model, mjOBJ_TENDON, name);
+    ASSERT_GE(tendon, 0) << name;
+    sites.insert(model->tendon_num[tendon]);
+  }
+  EXPECT_EQ(sites, (std::multiset{11, 11, 20}));  // without the two controllers
 }
 
 }  // namespace

@@ -120,6 +120,9 @@ std::vector<std::string> physpring::FuzzSeeds() {
       "nodes=3\ncontrollers=1\nsprings=0 1 1 2 2 3\nstiffness=100 90 80\nrest_length=0.1\n"
       "dashpot=0.1\ndrag=1\nsubstep=0.0001\ncontroller_velocity=1\ncollision_distance=0.01\n";
   return {springs + "order=0 0.1 0.2 0.3\neffects=[{\"name\":\"bending\",\"parameters\":{}}]\n",
+          springs +
+              "order=0 0.1 0.2 0.3\nrod=0 1 1 2 1 3\neffects=[{\"name\":\"bending\",\"parameters\":"
+              "{\"flexural_rigidity_n_m2\":0.01}}]\n",
           springs + "effects=[{\"name\":\"tension_only\",\"parameters\":{\"slack_share\":0.3}}]\n",
           springs +
               "friction=0.5\nrestitution=0.1\nobject_friction=1\nobject_restitution=0.2\n"

@@ -51,11 +51,14 @@ std::vector<std::string> physpring::FuzzSeeds() {
   timed["force"] = NpzArray::Doubles({4, 1, 3}, numbers.data());
   timed["held"] = NpzArray::Ints({4, 1}, held);
   timed.erase("fps");
+  Npz forked = least;
+  const int edges[] = {0, 1, 1, 2, 1, 3};
+  forked["rod"] = NpzArray::Ints({3, 2}, edges);
   Npz empty = least;
   empty["points"] = NpzArray::Floats({65535, 0, 3}, nullptr);  // 2^31 - 1 frames of nothing
   empty["controllers"] = empty["points"];
   Npz none = least;
   none["points"] = NpzArray::Floats({0, 3, 3}, nullptr);
-  return {BytesOf(arrays), BytesOf(least), BytesOf(clouds),
-          BytesOf(timed),  BytesOf(empty), BytesOf(none)};
+  return {BytesOf(arrays), BytesOf(least), BytesOf(clouds), BytesOf(timed),
+          BytesOf(forked), BytesOf(empty), BytesOf(none)};
 }

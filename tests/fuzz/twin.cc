@@ -55,9 +55,11 @@ std::vector<std::string> physpring::FuzzSeeds() {
   twin.fps = 30;
   twin.levels = {Row()};
   const Npz plain = StoredTwin(twin);
-  twin.order = Eigen::VectorXd::LinSpaced(4, 0, 0.3);
+  twin.rod = PlainRod(Eigen::VectorXd::LinSpaced(4, 0, 0.3));
   twin.levels[0].system.effects = {{"tension_only", Eigen::VectorXd::Constant(1, 0.3)},
                                    {"air_drag", Eigen::VectorXd::Constant(4, 0.1)}};
+  const Npz with_effects = StoredTwin(twin);
+  twin.rod = RodOfEdges({{0, 1}, {1, 2}, {1, 3}}, twin.levels[0].system.position);
   twin.posterior = {Eigen::MatrixXd::Constant(2, 3, 0.1), Eigen::MatrixXd::Constant(2, 3, 0.2),
                     Eigen::VectorXd::Constant(2, 0.3), Eigen::MatrixXd::Constant(2, 2, 0.1),
                     Eigen::MatrixXd::Constant(2, 5, 0.1)};
@@ -66,5 +68,5 @@ std::vector<std::string> physpring::FuzzSeeds() {
   twin.options_json = R"({"epochs":3,"a":[[1]]})";
   const double state = 0.5;
   twin.training_state["train/x"] = NpzArray::Doubles({1}, &state);
-  return {BytesOf(plain), BytesOf(StoredTwin(twin))};
+  return {BytesOf(plain), BytesOf(with_effects), BytesOf(StoredTwin(twin))};
 }

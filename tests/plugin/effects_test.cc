@@ -24,16 +24,22 @@ std::string Escaped(const std::string& text) {
 
 SpringMassSystem Rod() {
   SpringMassSystem rod = RandomSystem(40, 2, 3);
-  rod.order.setLinSpaced(42, 0, 1);
+  rod.rod = PlainRod(Eigen::VectorXd::LinSpaced(42, 0, 1));
   return rod;
 }
 
 LevelSceneOptions WithEffects(const SpringMassSystem& system) {
   std::string order;
-  for (double s : system.order) order += std::to_string(s) + " ";
-  return {.timestep = kSubsteps * kSubstep,
-          .substep = kSubstep,
-          .config = {{"order", order}, {"effects", Escaped(EffectsToJson(system.effects))}}};
+  for (double s : system.rod.arc) order += std::to_string(s) + " ";
+  std::string edges;
+  for (const auto& [a, b] : system.rod.edges) {
+    edges += std::to_string(a) + " " + std::to_string(b) + " ";
+  }
+  return {
+      .timestep = kSubsteps * kSubstep,
+      .substep = kSubstep,
+      .config = {
+          {"order", order}, {"rod", edges}, {"effects", Escaped(EffectsToJson(system.effects))}}};
 }
 
 double DistanceFromSimulator(const SpringMassSystem& system) {
@@ -45,11 +51,21 @@ double DistanceFromSimulator(const SpringMassSystem& system) {
   return (simulation.position() - scene.Positions()).colwise().norm().maxCoeff();
 }
 
+TEST(Effects, BendARodWithBranchesAsInTheSimulator) {
+  SpringMassSystem system = Rod();
+  RodEdges edges;
+  for (int i = 1; i < 42; ++i) edges.push_back({i == 30 ? 10 : i - 1, i});
+  system.rod = RodOfEdges(edges, system.position);
+  for (double& s : system.rod.arc) s = std::stod(std::to_string(s));
+  system.effects = {{"bending", GetEffect("bending").Starts(system)[1]}};
+  EXPECT_LT(DistanceFromSimulator(system), 1e-9);
+}
+
 TEST(Effects, MoveNodesAsInTheSimulator) {
   int tested = 0;
   for (const Effect* effect : AllEffects()) {
     SpringMassSystem system = Rod();
-    for (double& s : system.order) s = std::stod(std::to_string(s));
+    for (double& s : system.rod.arc) s = std::stod(std::to_string(s));
     const Eigen::VectorXd values = effect->Starts(system)[0];
     if (!effect->HasForces(system, values)) continue;
     system.effects = {{effect->name(), values}};

@@ -85,10 +85,10 @@ TEST(RegisterMarkers, NamesThemAllAlongTheRod) {
     }
     EXPECT_GT(seen, 0.85 * kMarkers * kFrames);
     EXPECT_NEAR(registered.seen, seen / (kMarkers * (kFrames - 1.0)), 1e-12);
-    ASSERT_EQ(recording.order.size(), kMarkers + 2);
-    EXPECT_NEAR(recording.order[kMarkers], 0, 1e-9);  // the first hand
-    for (int i = 0; i < kMarkers; ++i) EXPECT_NEAR(recording.order[i], kSpacing * (i + 1), 5e-3);
-    EXPECT_NEAR(recording.order[kMarkers + 1], kSpacing * (kMarkers + 1), 5e-3);
+    ASSERT_EQ(recording.rod.arc.size(), kMarkers + 2);
+    EXPECT_NEAR(recording.rod.arc[kMarkers], 0, 1e-9);  // the first hand
+    for (int i = 0; i < kMarkers; ++i) EXPECT_NEAR(recording.rod.arc[i], kSpacing * (i + 1), 5e-3);
+    EXPECT_NEAR(recording.rod.arc[kMarkers + 1], kSpacing * (kMarkers + 1), 5e-3);
   }
 }
 

@@ -13,9 +13,8 @@ SpringMassSystem RandomSystem(int nodes, int controllers, std::uint64_t seed) {
   TopologyOptions options;
   options.max_neighbours = 6;
   options.controller_max_neighbours = 4;
-  const Eigen::VectorXd no_order;
-  system.springs = BuildSprings(system.position, controllers, no_order, options, "random");
-  system.rest_length = SpringLengths(system.springs, system.position, no_order);
+  system.springs = BuildSprings(system.position, controllers, {}, options, "random");
+  system.rest_length = SpringLengths(system.springs, system.position, {});
   system.stiffness.resize(system.spring_count());
   system.dashpot.resize(system.spring_count());
   for (int e = 0; e < system.spring_count(); ++e) {

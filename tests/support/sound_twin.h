@@ -53,7 +53,7 @@ inline Twin MakeTwin() {
   twin.levels[1].assignment = {0, 0, 1};
   twin.points = 2;
   twin.interior = 1;
-  twin.order = Eigen::VectorXd::LinSpaced(4, 0, 1);
+  twin.rod = PlainRod(Eigen::VectorXd::LinSpaced(4, 0, 1));
   twin.fps = 29.97;
   twin.controller_velocity = false;
   twin.trained_on = {{"rope_lift", "0123456789abcdef", 84}};

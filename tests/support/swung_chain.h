@@ -11,7 +11,7 @@ namespace physpring {
 
 struct SwungChain {
   explicit SwungChain(int frames) : recording(SwungRope(8, frames)) {
-    recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.3, 0);
+    recording.rod = PlainRod(Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.3, 0));
     model.body = CandidateBodies(recording, {}).back();
     model.start_substeps = 8;
     model.start = Eigen::VectorXd::Zero(model.ParametersOf(recording).size());

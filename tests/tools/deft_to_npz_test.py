@@ -70,6 +70,18 @@ class DeftTest(CableCase):
                           ("hand_block1_frames100to599.npz", "fit", 1),
                           ("hand_block2_frames700to1199.npz", "heldout", 1)])
 
+    def test_edges_follow_the_branches(self):
+        self.run_tool("--between", "1")
+        file = np.load(self.output / "hand_block1_frames100to599.npz")
+        where = np.concatenate([file["points"][0], file["interior"], file["controllers"][0]])
+        edges = file["rod"]
+        length = np.linalg.norm(where[edges[:, 0]] - where[edges[:, 1]], axis=1)
+        # 9 gaps and 4 with a particle between, 2 of held markers without
+        np.testing.assert_allclose(np.sort(length), [GAP / 2] * 26 + [GAP] * 2, atol=1e-5)
+        degree = np.bincount(edges.ravel())
+        self.assertEqual(sorted(degree), [1] * 4 + [2] * 23 + [3] * 2)
+        np.testing.assert_allclose(where[degree == 3, 0], [4 * GAP, 8 * GAP], atol=1e-5)
+
     @unittest.skipUnless("PHYSPRING" in os.environ, "no program")
     def test_the_program_reads_them(self):
         self.run_tool("--mass", "0.1")
@@ -78,6 +90,7 @@ class DeftTest(CableCase):
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("controllers  4", done.stdout)
+        self.assertIn("rod          1.050 m long in all, 2 joints", done.stdout)
 
     def test_bad_files_are_one_line_and_nothing_is_written(self):
         bad = {"is no list of x, y and z": [[1, 2], [3]],

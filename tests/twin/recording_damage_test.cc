@@ -188,7 +188,7 @@ TEST_F(RecordingFile, WritesNoControllersAsNone) {
   Recording recording = MakeRecording();
   recording.controllers.clear();
   recording.rest_given = false;
-  recording.order.resize(0);
+  recording.rod = {};
   WriteRecording(recording, path_);
   EXPECT_EQ(ReadRecording(path_).controllers.size(), 4u);
   EXPECT_EQ(ReadRecording(path_).controller_count(), 0);

@@ -40,7 +40,7 @@ TEST_F(RecordingFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.rest, expected.rest);
   EXPECT_TRUE(read.rest_given);
   EXPECT_EQ(read.velocity, expected.velocity);
-  EXPECT_EQ(read.order, expected.order);
+  EXPECT_EQ(read.rod.arc, expected.rod.arc);
   EXPECT_EQ(read.train_frames, 3);
   EXPECT_TRUE(read.warnings.empty());
   Points start(3, 5);
@@ -64,7 +64,7 @@ TEST_F(RecordingFile, NeedsOnlyPointsControllersAndFps) {
   EXPECT_FALSE(read.rest_given);
   EXPECT_EQ(read.rest, read.start);
   EXPECT_EQ(read.velocity, Points::Zero(3, 3));
-  EXPECT_EQ(read.order.size(), 0);
+  EXPECT_EQ(read.rod.arc.size(), 0);
   EXPECT_TRUE(read.surface.empty());
   EXPECT_TRUE(read.track.empty());
   EXPECT_EQ(read.train_frames, 2);  // 70 % of 4, rounded down

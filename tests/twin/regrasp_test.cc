@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/support/small_twin.h"
+#include "twin/hierarchy.h"
 #include "twin/predict.h"
 
 namespace physpring {
@@ -82,6 +83,21 @@ TEST_F(RegraspTest, SpringsGoToTheNodesNearTheHand) {
       EXPECT_NEAR(after.rest_length[e], length, 1e-12);
     }
   }
+}
+
+// In the training both held throughout; here one lets go, and must not bend the rod from then on.
+TEST_F(RegraspTest, AControllerThatLetsGoIsNoPartOfARod) {
+  Twin rod = twin_;
+  const int nodes = rod.levels[0].system.node_count();
+  rod.rod = PlainRod(Eigen::VectorXd::LinSpaced(nodes + 2, 0, 1));
+  SpreadRod(&rod);
+  recording_.held.setConstant(recording_.frame_count(), 2, true);
+  EXPECT_EQ(HeldAsIn(&recording_, rod).rod, rod.rod);
+  recording_.held(recording_.frame_count() - 1, 1) = false;
+  const Twin held = HeldAsIn(&recording_, rod);
+  EXPECT_EQ(RodParts(held.rod)[nodes], 0);
+  EXPECT_EQ(RodParts(held.rod)[nodes + 1], -1);
+  EXPECT_EQ(held.levels[0].system.rod, held.rod);
 }
 
 TEST_F(RegraspTest, WhatItWasTrainedOnIsAsItWas) {

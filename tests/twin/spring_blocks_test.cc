@@ -19,11 +19,10 @@ namespace {
 // 2,000 nodes in a cube, about 15 springs a node.
 SpringMassSystem LargeSystem() {
   SpringMassSystem system = Particles(Random(1).Box(2000, 0.5), 0.01);
-  const Eigen::VectorXd no_order;
   TopologyOptions options;
   options.max_neighbours = 24;
-  system.springs = BuildSprings(system.position, 0, no_order, options, "large");
-  system.rest_length = SpringLengths(system.springs, system.position, no_order);
+  system.springs = BuildSprings(system.position, 0, {}, options, "large");
+  system.rest_length = SpringLengths(system.springs, system.position, {});
   system.stiffness.setConstant(system.spring_count(), 10);
   system.dashpot.setConstant(system.spring_count(), 0.1);
   return system;

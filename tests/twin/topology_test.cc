@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/forked_rod.h"
 #include "tests/support/random_system.h"
 #include "twin/error.h"
 
@@ -18,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using Springs = std::vector<std::array<int, 2>>;
 
-const Eigen::VectorXd kNoOrder;
+const Rod kNoRod;
 
 // Joins every point of `from` to the nearest `count` of `to` within `radius`, by a full search.
 void JoinAll(const Points& x, const std::vector<int>& from, const std::vector<int>& to,
@@ -60,8 +61,7 @@ TEST(Topology, TakesTheNearestWhereTheRadiusHoldsTooFew) {
   std::set<std::array<int, 2>> expected;
   JoinAll(x, Range(0, 200), Range(0, 200), 0.05, 20, &expected);
   JoinAll(x, Range(0, 200), Range(0, 200), 10, 5, &expected);
-  EXPECT_EQ(BuildSprings(x, 0, kNoOrder, options, "test"),
-            Springs(expected.begin(), expected.end()));
+  EXPECT_EQ(BuildSprings(x, 0, kNoRod, options, "test"), Springs(expected.begin(), expected.end()));
 }
 
 TEST(Topology, HybridSearchIsThatOfAFullSearch) {
@@ -73,7 +73,7 @@ TEST(Topology, HybridSearchIsThatOfAFullSearch) {
   JoinAll(x, Range(0, 300), Range(0, 300), 0.25, 10, &expected);
   const Springs sorted(expected.begin(), expected.end());
   ASSERT_TRUE(Connected(300, sorted));
-  EXPECT_EQ(BuildSprings(x, 0, kNoOrder, options, "x"), sorted);
+  EXPECT_EQ(BuildSprings(x, 0, kNoRod, options, "x"), sorted);
   // both limits were felt
   std::set<std::array<int, 2>> nearest, within;
   JoinAll(x, Range(0, 300), Range(0, 300), 1e9, 10, &nearest);
@@ -91,7 +91,7 @@ TEST(Topology, ControllersAreJoinedToNodesOnly) {
   std::set<std::array<int, 2>> expected;
   JoinAll(x, Range(0, 100), Range(0, 100), 1e9, 8, &expected);
   JoinAll(x, Range(100, 104), Range(0, 100), 0.3, 6, &expected);
-  EXPECT_EQ(BuildSprings(x, 4, kNoOrder, options, "x"), Springs(expected.begin(), expected.end()));
+  EXPECT_EQ(BuildSprings(x, 4, kNoRod, options, "x"), Springs(expected.begin(), expected.end()));
 }
 
 // Nodes along a helix whose turns are nearer to each other than the nodes of a turn.
@@ -118,19 +118,64 @@ TEST(Topology, ARodIsJoinedAlongItsLength) {
     }
     if (place[i] <= 1) expected.insert({i, nodes});  // the controller stands between 0 and 1
   }
-  const Springs found = BuildSprings(x, 1, order, options, "x");
+  const Springs found = BuildSprings(x, 1, PlainRod(order), options, "x");
   EXPECT_EQ(found, Springs(expected.begin(), expected.end()));
-  const Eigen::VectorXd length = SpringLengths(found, x, order);
+  const Eigen::VectorXd length = SpringLengths(found, x, PlainRod(order));
   for (std::size_t e = 0; e < found.size(); ++e) {
     EXPECT_DOUBLE_EQ(length[e], std::abs(order[found[e][0]] - order[found[e][1]]));
   }
+}
+
+// A controller at the end of a branch, as one with an edge.
+TEST(Topology, ARodIsJoinedAlongAllItsBranches) {
+  Points x(3, 11);
+  x << ForkedPlaces(), ForkedPlaces().col(9) + Vector3d(0, -0.1, 0);
+  RodEdges edges = kForkedEdges;
+  edges.push_back({9, 10});
+  const Rod rod = RodOfEdges(edges, x);
+  TopologyOptions options;
+  options.max_neighbours = 4;
+  options.controller_max_neighbours = 2;
+  const Springs found = BuildSprings(x, 1, rod, options, "x");
+  const auto joined_to = [&](int node) {
+    std::set<int> nodes;
+    for (const auto& [a, b] : found) {
+      if (a == node) nodes.insert(b);
+      if (b == node) nodes.insert(a);
+    }
+    return nodes;
+  };
+  // within two steps of the joint, each to each
+  EXPECT_EQ(joined_to(7), (std::set{0, 1, 2, 3, 4, 6, 8, 9}));
+  EXPECT_EQ(joined_to(2), (std::set{0, 1, 3, 4, 6, 7, 8, 9}));
+  EXPECT_EQ(joined_to(5), (std::set{3, 4}));
+  EXPECT_EQ(joined_to(10), (std::set{9, 8}));
+  const Eigen::VectorXd length = SpringLengths(found, x, rod);
+  for (std::size_t e = 0; e < found.size(); ++e) {
+    EXPECT_DOUBLE_EQ(length[e], RodLengths(rod).Between(found[e][0], found[e][1], x));
+  }
+}
+
+TEST(Topology, AChainIsBracedAtItsJoints) {
+  const Springs chain = ChainSprings(ForkedRod(), 10);
+  std::set<std::array<int, 2>> expected(kForkedEdges.begin(), kForkedEdges.end());
+  const std::array<std::array<int, 2>, 4> ways = {{{1, 0}, {3, 4}, {6, 7}, {8, 9}}};
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      for (int a : ways[i]) {
+        for (int b : ways[j]) expected.insert({std::min(a, b), std::max(a, b)});
+      }
+    }
+  }
+  EXPECT_EQ(chain, Springs(expected.begin(), expected.end()));
+  EXPECT_EQ(ChainSprings(PlainRod(Eigen::Vector3d(0, 0.2, 0.1)), 3), (Springs{{0, 2}, {1, 2}}));
 }
 
 TEST(Topology, SpringLengthsAreDistances) {
   Points x(3, 2);
   x.col(0) << 1, 2, 3;
   x.col(1) << 3, 5, 9;
-  EXPECT_DOUBLE_EQ(SpringLengths({{0, 1}}, x, kNoOrder)[0], 7);
+  EXPECT_DOUBLE_EQ(SpringLengths({{0, 1}}, x, kNoRod)[0], 7);
 }
 
 // Two cubes of 3 x 3 x 3 nodes, 1 m apart each, with `gap` between them.
@@ -146,7 +191,7 @@ TEST(Topology, GroupsThatTheSearchLeavesApartAreJoined) {
   const Points x = TwoCubes(2.5);
   TopologyOptions options;
   options.radius = 1.1;
-  const Springs springs = BuildSprings(x, 0, kNoOrder, options, "x");
+  const Springs springs = BuildSprings(x, 0, kNoRod, options, "x");
   EXPECT_TRUE(Connected(54, springs));
   int across = 0;
   for (const auto& [a, b] : springs) {
@@ -162,13 +207,13 @@ TEST(Topology, OfOneGroupIsLeftAsItIs) {
   const Points x = TwoCubes(1);
   TopologyOptions options;
   options.radius = 1.1;
-  EXPECT_EQ(BuildSprings(x, 0, kNoOrder, options, "x").size(), 2 * 54 + 9);
+  EXPECT_EQ(BuildSprings(x, 0, kNoRod, options, "x").size(), 2 * 54 + 9);
 }
 
 std::string ErrorOf(const Points& x, int controllers, const TopologyOptions& options,
-                    const Eigen::VectorXd& order = kNoOrder) {
+                    const Rod& rod = kNoRod) {
   try {
-    BuildSprings(x, controllers, order, options, "toy.npz");
+    BuildSprings(x, controllers, rod, options, "toy.npz");
   } catch (const Error& error) {
     return error.what();
   }
@@ -192,7 +237,8 @@ TEST(Topology, CoincidentNodesAreAnError) {
 TEST(Topology, CoincidentNodesOfARodAreAnError) {
   Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(10, 0, 1);
   order[5] = order[2];
-  ExpectMentions(ErrorOf(Random(4).Box(10, 1), 0, {}, order), {"particles 2 and 5", "same place"});
+  ExpectMentions(ErrorOf(Random(4).Box(10, 1), 0, {}, PlainRod(order)),
+                 {"particles 2 and 5", "same place"});
 }
 
 TEST(Topology, SeparateObjectsAreAnError) {

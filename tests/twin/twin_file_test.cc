@@ -17,7 +17,7 @@ TEST_F(TwinFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.name, twin.name);
   EXPECT_EQ(read.points, 2);
   EXPECT_EQ(read.interior, 1);
-  EXPECT_EQ(read.order, twin.order);
+  EXPECT_EQ(read.rod, twin.rod);
   EXPECT_EQ(read.fps, 29.97);
   EXPECT_EQ(read.gravity, twin.gravity);
   EXPECT_FALSE(read.controller_velocity);
@@ -54,6 +54,26 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
     EXPECT_EQ(system.contact.collision_distance, expected.contact.collision_distance);
     EXPECT_EQ(system.contact_radius, expected.contact_radius);
     EXPECT_EQ(read.levels[n].substeps_per_second, 20010);
+  }
+}
+
+TEST_F(TwinFile, KeepsARodWithBranchesOnAllLevels) {
+  Twin twin = MakeTwin();
+  twin.rod = RodOfEdges({{0, 1}, {0, 2}, {0, 3}}, twin.levels[0].system.position);
+  WriteTwin(twin, path_);
+  const Twin read = ReadTwin(path_);
+  EXPECT_EQ(read.rod, twin.rod);
+  EXPECT_EQ(read.levels[0].system.rod, twin.rod);
+  const SpringMassSystem& coarse = read.levels[1].system;
+  EXPECT_EQ(coarse.rod, CoarseRod(twin.rod, read.levels[1].assignment, coarse.node_count()));
+  twin.rod.edges.push_back({3, 4});
+  try {
+    WriteTwin(twin, path_);  // reads it again
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("array 'rod' has an edge from 3 to 4"),
+              std::string::npos)
+        << error.what();
   }
 }
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "trainer/bodies/spring_net.h"
 #include "twin/effects/registry.h"
+#include "twin/topology.h"
 
 namespace physpring {
 namespace {
@@ -19,8 +19,6 @@ constexpr double kRigidity = 3e-3;
 // so many of their coordinates, one after the other, are off alike: they count as one.
 constexpr double kChainDifference = 1e-2, kAlike = 30;
 constexpr double kSimpler = 0.9;  // it has a tenth of a net's parameters: a tie is its
-
-double RodLength(const Eigen::VectorXd& order) { return order.maxCoeff() - order.minCoeff(); }
 
 bool Bends(const EffectValues& effect) { return GetEffect(effect.name).bends(); }
 
@@ -36,6 +34,13 @@ double FlexuralRigidity(const std::vector<EffectValues>& effects) {
   double sum = 0;
   for (const EffectValues& e : effects) sum += GetEffect(e.name).FlexuralRigidity(e.values);
   return sum;
+}
+
+// How many of them a body has.
+int FittedEffects(const SpringMassSystem& system) {
+  return static_cast<int>(std::count_if(
+      system.effects.begin(), system.effects.end(),
+      [](const EffectValues& e) { return GetEffect(e.name).rod_part() == RodPart::kFitted; }));
 }
 
 // How far a search moves moments of the fitted effects, by their parameters; all have one scale.
@@ -57,9 +62,9 @@ class BendingChainKind : public BodyKind {
   // stiffness answers to the curvature where it slips. Its springs are all alike, and how they are
   // damped along it hardly matters: fitted, that would ask for all sub-steps there are.
   void Free(const SpringMassSystem& base, ParameterOptions* options) const override {
-    options->free_effects = static_cast<int>(EffectsOfRods(RodPart::kFitted).size());
+    options->free_effects = FittedEffects(base);
     options->length_classes = options->dashpots = false;
-    const double moment = FlexuralRigidity(base.effects) * kSlip / RodLength(base.order);
+    const double moment = FlexuralRigidity(base.effects) * kSlip / RodLength(base.rod);
     options->moment_unit = moment / MomentScale();
   }
 
@@ -84,19 +89,21 @@ class BendingChainKind : public BodyKind {
 
 // The effects of a chain at their start: first those that stay, then those that are fitted.
 std::vector<EffectValues> StartEffects(const Recording& recording) {
-  const double length = RodLength(recording.order);
-  const double spacing = length / static_cast<double>(recording.order.size() - 1);
+  const double length = RodLength(recording.rod);
+  const double spacing = length / static_cast<double>(recording.rod.arc.size() - 1);
   const double gravity = recording.gravity.norm() > 0 ? recording.gravity.norm() : 9.81;
   const RodTraits rod = {
       .length = length,
       .spacing = spacing,
       .node_mass = recording.mass / static_cast<double>(recording.particle_count()),
       .flexural_rigidity = kRigidity * recording.mass * gravity * length * length,
-      .slip_angle = kSlip};
+      .slip_angle = kSlip,
+      .joints = !IsPlain(recording.rod)};
   std::vector<EffectValues> effects;
   for (const RodPart part : {RodPart::kGiven, RodPart::kFitted}) {
     for (const Effect* effect : EffectsOfRods(part)) {
-      effects.push_back({effect->name(), effect->StartOfRod(rod)});
+      const Eigen::VectorXd start = effect->StartOfRod(rod);
+      if (start.size() > 0) effects.push_back({effect->name(), start});
     }
   }
   return effects;
@@ -116,16 +123,12 @@ Body BendingChain(const Recording& recording, Body body) {
 
 bool IsBendingChain(const SpringMassSystem& system) {
   const bool bends = std::any_of(system.effects.begin(), system.effects.end(), Bends);
-  if (!bends || system.order.size() == 0) return false;
+  if (!bends || system.rod.empty()) return false;
   const int nodes = system.node_count();
-  std::vector<int> along(nodes), place(nodes);
-  std::iota(along.begin(), along.end(), 0);
-  std::sort(along.begin(), along.end(),
-            [&](int i, int j) { return system.order[i] < system.order[j]; });
-  for (int i = 0; i < nodes; ++i) place[along[i]] = i;
+  const std::vector<std::array<int, 2>> chain = ChainSprings(system.rod, nodes);
   return std::all_of(system.springs.begin(), system.springs.end(), [&](const auto& spring) {
     const bool controlled = std::max(spring[0], spring[1]) >= nodes;
-    return controlled || std::abs(place[spring[0]] - place[spring[1]]) == 1;
+    return controlled || std::binary_search(chain.begin(), chain.end(), spring);
   });
 }
 

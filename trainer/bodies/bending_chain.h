@@ -7,11 +7,12 @@
 namespace physpring {
 
 // A chain of nodes that bends as a rod does: with stiffness, friction between its strands, twist
-// and a shape of its own, all fitted. Where effects of bending are among those of `body` already,
-// it is a net of springs along the rod.
+// (no branches) and a shape of its own, all fitted. Where effects of bending are among those of
+// `body` already, it is a net of springs along the rod.
 Body BendingChain(const Recording& recording, Body body);
 
-// Whether a system's particles are joined to the next along a rod only, which bends by an effect.
+// Whether a system's particles are joined to the next along a rod only (at joints: ChainSprings),
+// which bends by an effect.
 bool IsBendingChain(const SpringMassSystem& system);
 
 }  // namespace physpring

@@ -15,7 +15,7 @@ namespace {
 std::vector<int> NeighbourCounts(const Recording& recording, const TrainOptions& options) {
   std::vector<int> counts = options.neighbours;
   if (counts.empty()) {
-    counts = recording.order.size() > 0 ? std::vector<int>{12, 20} : std::vector<int>{18, 28, 40};
+    counts = !recording.rod.empty() ? std::vector<int>{12, 20} : std::vector<int>{18, 28, 40};
   }
   // more neighbours than there are particles are all the same
   const int most = std::max(1, recording.particle_count() - 1);
@@ -40,7 +40,7 @@ std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions
   std::vector<Body> candidates;
   double last_radius = 0;
   for (int count : NeighbourCounts(recording, options)) {
-    const bool rod = recording.order.size() > 0 || particles.cols() < 2;
+    const bool rod = !recording.rod.empty() || particles.cols() < 2;
     const double radius = rod ? 0 : SpringRadius(particles, count);
     if (!rod && radius < 1.02 * last_radius) continue;  // it reaches the same shells again
     last_radius = radius;
@@ -52,8 +52,11 @@ std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions
       }
     }
   }
-  if (recording.order.size() > 0 && options.neighbours.empty()) {
-    candidates.push_back(BendingChain(recording, candidates[0]));
+  if (!recording.rod.empty() && options.neighbours.empty()) {
+    const Body chain = BendingChain(recording, candidates[0]);
+    // nets fit a rod with branches no better and predict it far worse
+    if (!IsPlain(recording.rod)) candidates.clear();
+    candidates.push_back(chain);
   }
   return candidates;
 }

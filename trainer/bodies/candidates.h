@@ -10,7 +10,8 @@
 namespace physpring {
 
 // The bodies that the options leave open, in all combinations, few neighbours first. For a rod
-// whose neighbours are not given, a chain that bends comes last. The list is never empty.
+// whose neighbours are not given, a chain that bends comes last; if it has branches, alone. The
+// list is never empty.
 std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions& options);
 
 }  // namespace physpring

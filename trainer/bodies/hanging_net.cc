@@ -64,7 +64,7 @@ double Fallen(const Recording& recording, int frame) {
 }  // namespace
 
 bool HangsAtRest(const Recording& recording) {
-  if (recording.controller_count() == 0 || recording.rest_given || recording.order.size() > 0 ||
+  if (recording.controller_count() == 0 || recording.rest_given || !recording.rod.empty() ||
       recording.gravity.norm() == 0 || !recording.velocity.isZero(0) || IsOnGround(recording)) {
     return false;
   }

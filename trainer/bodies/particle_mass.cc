@@ -98,7 +98,7 @@ Eigen::VectorXd ParticleMasses(const Recording& recording) {
   const int count = recording.particle_count();
   Eigen::VectorXd masses = Eigen::VectorXd::Constant(count, recording.mass / count);
   const bool unseen = recording.interior_count() > recording.point_count();
-  if (!unseen || recording.order.size() > 0) return masses;
+  if (!unseen || !recording.rod.empty()) return masses;
   const std::vector<Held> held = HeldParts(recording);
   Points body(3, count + static_cast<Eigen::Index>(held.size()));
   body.leftCols(count) = recording.rest.leftCols(count);

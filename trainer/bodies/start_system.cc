@@ -81,7 +81,7 @@ std::vector<std::array<int, 2>> SpringsOf(const Recording& recording,
                                           const TopologyOptions& topology) {
   const int particles = recording.particle_count();
   if (recording.object.size() == 0) {
-    return BuildSprings(recording.rest, recording.controller_count(), recording.order, topology,
+    return BuildSprings(recording.rest, recording.controller_count(), recording.rod, topology,
                         recording.name);
   }
   std::vector<std::array<int, 2>> all;
@@ -89,11 +89,10 @@ std::vector<std::array<int, 2>> SpringsOf(const Recording& recording,
     const std::vector<int> columns = ColumnsOf(recording, object);
     const auto controllers =
         std::count_if(columns.begin(), columns.end(), [&](int i) { return i >= particles; });
-    const Eigen::VectorXd order =
-        recording.order.size() > 0 ? Eigen::VectorXd(recording.order(columns)) : Eigen::VectorXd();
     for (const auto& [a, b] :
-         BuildSprings(recording.rest(Eigen::all, columns), static_cast<int>(controllers), order,
-                      topology, fmt::format("{}, object {}", recording.name, object))) {
+         BuildSprings(recording.rest(Eigen::all, columns), static_cast<int>(controllers),
+                      PartOfRod(recording.rod, columns), topology,
+                      fmt::format("{}, object {}", recording.name, object))) {
       all.push_back({columns[a], columns[b]});
     }
   }
@@ -108,10 +107,10 @@ SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptio
   const int nodes = recording.particle_count();
   system.position = recording.rest;
   system.controllers = recording.controller_count();
-  system.order = recording.order;
+  system.rod = recording.rod;
   system.mass = Eigen::VectorXd::Constant(nodes, recording.mass / nodes);
   system.springs = SpringsOf(recording, topology);
-  system.rest_length = SpringLengths(system.springs, recording.rest, recording.order);
+  system.rest_length = SpringLengths(system.springs, recording.rest, recording.rod);
   system.stiffness = system.rest_length.cwiseInverse();
   system.dashpot = Eigen::VectorXd::Ones(system.spring_count());
   system.drag = kStartDrag;

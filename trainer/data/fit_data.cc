@@ -116,7 +116,7 @@ Twin DenseTwin(const Recording& recording, const SpringMassSystem& system, bool 
   twin.levels.emplace_back().system = system;
   twin.points = recording.point_count();
   twin.interior = recording.interior_count();
-  twin.order = recording.order;
+  twin.rod = recording.rod;
   twin.controller_velocity = controller_velocity;
   twin.late = LateGraspsOf(recording);
   twin.fps = recording.fps;

@@ -32,7 +32,7 @@ Twin WithNextLevel(const Twin& below, const Assignment& assignment, const Eigen:
   Twin twin = below;
   twin.levels.push_back(
       {Project(below.levels.back().system, assignment, up).system, assignment, 0});
-  SpreadOrder(&twin);
+  SpreadRod(&twin);
   return twin;
 }
 

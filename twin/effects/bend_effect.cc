@@ -76,7 +76,7 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
   using Vector = Eigen::Vector3d;
   const std::vector<BendingTriple>& triples = laws[0].moment->triples();
   for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
-    const auto [a, b, c, length] = triples[i];
+    const auto [a, b, c, length, rest] = triples[i];
     const Bent bent(instant, triples[i]);
     // forward: f_a -= G(p, M), f_b += G(p, M) + G(q, M), f_c -= G(q, M)
     const Vector on_p_bar = force_bar.col(b) - force_bar.col(a);
@@ -119,7 +119,7 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
 }
 
 void StiffenLikeBending(double stiffness, double damping, SpringMassSystem* bound) {
-  for (const auto& [a, b, c, length] : FindBendingTriples(*bound)) {
+  for (const auto& [a, b, c, length, rest] : FindBendingTriples(*bound)) {
     // kappa is at most (q - p) / shorter edge, and |q - p|^2 at most 2 |p|^2 + 2 |q|^2
     const double p = (bound->position.col(b) - bound->position.col(a)).norm();
     const double q = (bound->position.col(c) - bound->position.col(b)).norm();

@@ -16,15 +16,29 @@ BendingTriple MakeTriple(const SpringMassSystem& system, int a, int b, int c) {
   return {a, b, c, ((x.col(b) - x.col(a)).norm() + (x.col(c) - x.col(b)).norm()) / 2};
 }
 
+double BendAt(const Points& x, const BendingTriple& triple) {
+  return ((x.col(triple.c) - x.col(triple.b)).normalized() -
+          (x.col(triple.b) - x.col(triple.a)).normalized())
+      .norm();
+}
+
 std::vector<BendingTriple> AlongRod(const SpringMassSystem& system) {
-  std::vector<int> sorted(static_cast<std::size_t>(system.order.size()));
+  const std::vector<std::vector<int>> neighbours = RodNeighbours(system.rod);
+  std::vector<int> sorted(neighbours.size());
   std::iota(sorted.begin(), sorted.end(), 0);
   std::stable_sort(sorted.begin(), sorted.end(),
-                   [&](int i, int j) { return system.order[i] < system.order[j]; });
+                   [&](int i, int j) { return system.rod.arc[i] < system.rod.arc[j]; });
   std::vector<BendingTriple> triples;
-  for (std::size_t i = 2; i < sorted.size(); ++i) {
-    const int a = sorted[i - 2], b = sorted[i - 1], c = sorted[i];
-    if (std::min({a, b, c}) < system.node_count()) triples.push_back(MakeTriple(system, a, b, c));
+  for (const int b : sorted) {
+    const std::vector<int>& next = neighbours[b];
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      for (std::size_t j = i + 1; j < next.size(); ++j) {
+        const int a = next[i], c = next[j];
+        if (std::min({a, b, c}) >= system.node_count()) continue;
+        triples.push_back(MakeTriple(system, a, b, c));
+        if (next.size() > 2) triples.back().rest = BendAt(system.position, triples.back());
+      }
+    }
   }
   return triples;
 }
@@ -32,7 +46,7 @@ std::vector<BendingTriple> AlongRod(const SpringMassSystem& system) {
 }  // namespace
 
 std::vector<BendingTriple> FindBendingTriples(const SpringMassSystem& system) {
-  if (system.order.size() > 0) return AlongRod(system);
+  if (!system.rod.empty()) return AlongRod(system);
   const Points& x = system.position;
   std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(x.cols()));
   for (const auto& [a, b] : system.springs) {

@@ -49,7 +49,7 @@ Eigen::Vector3d LongestAxis(const Points& centred) {
 }  // namespace
 
 Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system) {
-  Eigen::VectorXd along = system.order;
+  Eigen::VectorXd along = system.rod.arc;
   if (along.size() == 0) {
     const Points centred = Centred(system);
     along = centred.transpose() * LongestAxis(centred);
@@ -61,7 +61,7 @@ Eigen::VectorXd BodyCoordinate(const SpringMassSystem& system) {
 
 Points PlaceAcross(const SpringMassSystem& system) {
   Points across = Points::Zero(3, system.position.cols());
-  if (system.order.size() > 0) return across;
+  if (!system.rod.empty()) return across;
   const Points centred = Centred(system);
   const Eigen::Vector3d axis = LongestAxis(centred);
   across = centred - axis * (axis.transpose() * centred);

@@ -54,7 +54,7 @@ struct Setting {
 struct BodyTraits {
   bool on_ground;  // there is a ground
   bool solid;      // its springs spread in all three directions
-  bool rod;        // its arc lengths are known
+  bool one_rod;    // it is a rod without joints
 };
 
 // A rod with which a fit starts.
@@ -63,6 +63,7 @@ struct RodTraits {
   double node_mass;          // kg
   double flexural_rigidity;  // N m^2, that would matter to it under its own weight
   double slip_angle;         // rad, by which it is bent in all where its strands begin to slip
+  bool joints;               // it has branches
 };
 
 // Whether every rod has an effect, and whether a fit changes its values.
@@ -127,7 +128,7 @@ class Effect {
   virtual bool MayBeMissing(const BodyTraits& body) const { return !(body.solid && bends()); }
 
   virtual RodPart rod_part() const { return RodPart::kNone; }
-  // Values with which a rod starts, if it has the effect.
+  // Values with which a rod starts, if it has the effect; none: it does not.
   virtual Eigen::VectorXd StartOfRod(const RodTraits& rod) const;
   // The flexural rigidity that is added to a rod, N m^2.
   virtual double FlexuralRigidity(const Eigen::VectorXd& values) const;

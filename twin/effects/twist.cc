@@ -122,6 +122,8 @@ class TwistForce : public EffectForce {
   double length_ = 0;  // L, m
 };
 
+bool IsOneRod(const SpringMassSystem& system) { return !system.rod.empty() && IsPlain(system.rod); }
+
 class TwistEffect : public Effect {
  public:
   std::string name() const override { return "twist"; }
@@ -134,7 +136,7 @@ class TwistEffect : public Effect {
   }
   bool bends() const override { return true; }
   bool MayBeMissing(const BodyTraits& body) const override {
-    return body.rod && Effect::MayBeMissing(body);
+    return body.one_rod && Effect::MayBeMissing(body);
   }
   std::vector<EffectParameter> parameters() const override {
     return {{"torsional_rigidity_n_m2", 0, 1, 1, 1, EffectParameter::Spacing::kLogarithmic},
@@ -149,16 +151,17 @@ class TwistEffect : public Effect {
   }
   RodPart rod_part() const override { return RodPart::kFitted; }
   Eigen::VectorXd StartOfRod(const RodTraits& rod) const override {
-    return Eigen::Vector2d(rod.flexural_rigidity, 0);
+    return rod.joints ? Eigen::VectorXd()
+                      : Eigen::VectorXd(Eigen::Vector2d(rod.flexural_rigidity, 0));
   }
-  // Nothing where no rod is known.
+  // Nothing but in one rod without joints: branches would need a twist each.
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    if (system.order.size() == 0) return nullptr;
+    if (!IsOneRod(system)) return nullptr;
     return std::make_unique<TwistForce>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
-    if (bound->order.size() > 0) StiffenLikeBending(values[0], 0, bound);
+    if (IsOneRod(*bound)) StiffenLikeBending(values[0], 0, bound);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
     return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not twist"};

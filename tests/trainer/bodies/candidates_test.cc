@@ -12,7 +12,7 @@ namespace {
 
 Recording Rod() {
   Recording recording = SwungRope(30, 2);
-  recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.3, 0);
+  recording.rod = PlainRod(Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.3, 0));
   return recording;
 }
 
@@ -24,6 +24,22 @@ TEST(Candidates, OfARodEndWithAChainThatBends) {
   EXPECT_EQ(system.effects.size(), 5U);
   EXPECT_NO_THROW(system.Validate("chain"));
   EXPECT_EQ(CommonFactors(system, Rod(), *chain.kind).effect_count(), 1 + 2 + 16 + 2);
+}
+
+// Branches would need a twist each; nets do not predict.
+TEST(Candidates, OfARodWithBranchesAreOneChainWithoutTwist) {
+  Recording rod = Rod();
+  RodEdges edges = rod.rod.edges;
+  std::swap(edges.back()[0], edges.front()[0]);
+  edges.push_back({3, 9});
+  rod.rod = RodOfEdges(edges, rod.rest);
+  ASSERT_GT(RodJoints(rod.rod), 0);
+  ASSERT_EQ(CandidateBodies(rod, {}).size(), 1U);
+  const Body chain = CandidateBodies(rod, {})[0];
+  const SpringMassSystem system = StartSystem(rod, chain, 8);
+  EXPECT_EQ(system.effects.size(), 4U);
+  EXPECT_NO_THROW(system.Validate("chain"));
+  EXPECT_EQ(CommonFactors(system, rod, *chain.kind).effect_count(), 1 + 2 + 16);
 }
 
 // Nodes that go to and fro across the rod, every other one the other way: its shortest wave.

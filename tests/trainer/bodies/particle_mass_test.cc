@@ -25,7 +25,7 @@ Recording SolidBox() {
   box.rest.resize(3, grid.cols() + box.controller_count());
   box.rest << grid, box.start.rightCols(box.controller_count());
   box.start = box.rest;
-  box.order.resize(0);
+  box.rod = {};
   box.mass = 0.3;
   return box;
 }
@@ -75,7 +75,7 @@ TEST(ParticleMasses, AtAClampedFaceAreTheControllersToo) {
 
 TEST(ParticleMasses, OfOtherBodiesAreAlike) {
   Recording box = SolidBox();
-  box.order = Eigen::VectorXd::LinSpaced(box.rest.cols(), 0, 1);
+  box.rod = PlainRod(Eigen::VectorXd::LinSpaced(box.rest.cols(), 0, 1));
   EXPECT_EQ(ParticleMasses(box).minCoeff(), ParticleMasses(box).maxCoeff());
   const Recording seen = [] {
     Recording all = SolidBox();

@@ -38,8 +38,8 @@ TEST(StartSystem, MassesSumToTheRecordings) {
 
 TEST(StartSystem, RodKnowsItsArcLengths) {
   Recording recording = SwungRope(8, 2);
-  recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
-  EXPECT_EQ(MakeStartSystem(recording, {}).order, recording.order);
+  recording.rod = PlainRod(Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0));
+  EXPECT_EQ(MakeStartSystem(recording, {}).rod.arc, recording.rod.arc);
 }
 
 TEST(StartSystem, SpringsAreStressFreeAndOfTheSameAxialStiffness) {

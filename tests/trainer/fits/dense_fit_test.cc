@@ -207,7 +207,7 @@ TEST(FitDense, SingleSpringsWhereTheyPredictBetter) {
   EXPECT_TRUE(std::is_sorted(log.shares.begin(), log.shares.end()));
   EXPECT_NE(twin.levels[0].system.rest_length,
             SpringLengths(twin.levels[0].system.springs, data.recordings[0].rest,
-                          data.recordings[0].order));
+                          data.recordings[0].rod));
   int stops = 0;
   ExpectSameTwin(RunStopped(fit, 3, &stops), twin);
   EXPECT_GT(stops, 5);
@@ -265,7 +265,7 @@ TEST(FitDense, StoppedAnywhereGivesTheSameBits) {
 // What moved as a chain that bends gets one, whose fit ends with free motions.
 TEST(FitDense, FitsAChainStoppedOrNot) {
   Recording recording = SwungRope(8, kFrames);
-  recording.order = Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0);
+  recording.rod = PlainRod(Eigen::VectorXd::LinSpaced(recording.rest.cols(), 0.08, 0));
   MoveAs(StartSystem(recording, CandidateBodies(recording, {}).back(), 8), true, &recording);
   FitData data;
   data.recordings.push_back(recording);

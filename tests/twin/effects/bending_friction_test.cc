@@ -28,7 +28,7 @@ double MomentOf(int edges, double curvature) {
   SpringMassSystem system;
   system.position = Arc(edges, 0);
   system.mass = Eigen::VectorXd::Ones(edges + 1);
-  system.order = Eigen::VectorXd::LinSpaced(edges + 1, 0, kLength);
+  system.rod = PlainRod(Eigen::VectorXd::LinSpaced(edges + 1, 0, kLength));
   const auto moment =
       GetEffect("bending_friction").MakeBend(system, Eigen::Vector2d(kMoment, kSlip));
   Eigen::VectorXd internal = Eigen::VectorXd::Zero(moment->internal_size());

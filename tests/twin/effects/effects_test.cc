@@ -3,11 +3,14 @@
 // change nothing.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <map>
 
+#include "tests/support/forked_rod.h"
 #include "tests/support/lanes.h"
 #include "tests/support/random_system.h"
 #include "tests/support/targeted_rollout.h"
+#include "twin/effects/bend_effect.h"
 #include "twin/effects/body_coordinate.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
@@ -72,13 +75,13 @@ EffectValues Values(const Effect& effect, const std::vector<double>& values) {
 class Effects : public testing::TestWithParam<const Effect*> {
  protected:
   Effects() : rollout(RandomRollout(4, 1)) {
-    rollout.system.order = Eigen::VectorXd::LinSpaced(27, 0, 0.5);
+    rollout.system.rod = PlainRod(Eigen::VectorXd::LinSpaced(27, 0, 0.5));
     recording.fps = 1 / rollout.options.frame_time;
     recording.controllers.push_back(rollout.frames[0].controllers_start);
     for (const FrameInput& frame : rollout.frames) {
       recording.controllers.push_back(frame.controllers_end);
     }
-    if (GetParam()->name() == "rest_length") rollout.system.order.resize(0);  // bends no rod
+    if (GetParam()->name() == "rest_length") rollout.system.rod = {};  // bends no rod
     if (GetParam()->name() == "ground_contact") {
       rollout.environment.ground = Eigen::Vector4d(0, 0, 1, -0.085);
       rollout.velocity.row(2).array() -= 1;
@@ -206,7 +209,7 @@ TEST(ControlLatency, HasTheDerivativeThatDifferencesShowIfNegative) {
 // Laws of bending share the geometry of their triples.
 TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
   TargetedRollout rollout = RandomRollout(4, 1);
-  rollout.system.order = Eigen::VectorXd::LinSpaced(27, 0, 0.5);
+  rollout.system.rod = PlainRod(Eigen::VectorXd::LinSpaced(27, 0, 0.5));
   for (const char* name : {"bending_friction", "rest_bend", "bending", "bending_damping"}) {
     rollout.system.effects.push_back(Values(GetEffect(name), Cases().at(name).values));
   }
@@ -219,6 +222,69 @@ TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
       variables.push_back({effect.name + " " + std::to_string(j), &effect.values[j],
                            kKinked * scale, gradient.system.effects[i][j]});
     }
+  }
+  const auto loss = [&] { return Loss<double>(rollout); };
+  const GradientReport report = CheckGradient(loss, variables);
+  EXPECT_TRUE(report.passed) << report.log;
+}
+
+// A rod with branches, which is at rest as it is bent in the reference configuration.
+TEST(BendingEffects, KeepBranchesAtTheirAngles) {
+  SpringMassSystem system;
+  system.position = ForkedPlaces();
+  system.mass = Eigen::VectorXd::Ones(10);
+  system.rod = ForkedRod();
+  const auto force_of = [&](const Points& x) {
+    const std::unique_ptr<BendMoment> law =
+        GetEffect("bending").MakeBend(system, Eigen::VectorXd::Constant(1, 0.1));
+    Points force = Points::Zero(3, 10);
+    Eigen::VectorXd internal;
+    const Points still = Points::Zero(3, 10);
+    AddBendForces({{law.get(), 0}}, {0, 1e-3, x, still}, internal, &force);
+    return force;
+  };
+  EXPECT_LT(force_of(system.position).norm(), 1e-6);
+  // a branch that is turned towards the straight part is pushed back
+  Points turned = system.position;
+  const Eigen::AngleAxisd turn(-0.2, Eigen::Vector3d::UnitZ());
+  for (int i : {6, 7}) turned.col(i) = turned.col(2) + turn * (turned.col(i) - turned.col(2));
+  const Points force = force_of(turned);
+  const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(turned.col(6) - turned.col(2));
+  EXPECT_GT(across.normalized().dot(force.col(6)), 0.01);
+  EXPECT_LT(force.rowwise().sum().norm(), 1e-12);
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 10; ++i) torque += turned.col(i).cross(force.col(i));
+  EXPECT_LT(torque.norm(), 1e-12);
+}
+
+TEST(BendingEffects, AtJointsHaveTheDerivativesThatDifferencesShow) {
+  TargetedRollout rollout = RandomRollout(4, 1);
+  RodEdges
+      edges;  // a main rod of nine nodes, the controllers at an end, and branches of every third
+  for (int i = 1; i < 9; ++i) edges.push_back({i - 1, i});
+  for (int i = 9; i < 25; ++i) edges.push_back({i < 14 ? 2 * (i - 9) : i - 5, i});
+  edges.push_back({8, 25});
+  edges.push_back({25, 26});
+  rollout.system.rod = RodOfEdges(edges, rollout.system.position);
+  ASSERT_GT(RodJoints(rollout.system.rod), 2);
+  for (const char* name : {"bending", "bending_friction", "rest_bend", "bending_damping"}) {
+    rollout.system.effects.push_back(Values(GetEffect(name), Cases().at(name).values));
+  }
+  const RolloutGradient gradient = Gradient<double>(rollout);
+  std::vector<CheckedVariable> variables;
+  for (std::size_t i = 0; i < rollout.system.effects.size(); ++i) {
+    EffectValues& effect = rollout.system.effects[i];
+    for (Eigen::Index j = 0; j < effect.values.size(); ++j) {
+      const double scale = effect.name == "rest_bend" ? 1e-3 : effect.values[j];
+      if (scale == 0) continue;
+      variables.push_back({effect.name + " " + std::to_string(j), &effect.values[j],
+                           kKinked * scale, gradient.system.effects[i][j]});
+    }
+  }
+  // through the motion: bends at joints depend on where nodes are
+  for (int i : {0, 4, 7, 30, 31, 32, 60}) {
+    variables.push_back({"velocity " + std::to_string(i), &rollout.velocity.data()[i], 1e-5,
+                         gradient.velocity.data()[i]});
   }
   const auto loss = [&] { return Loss<double>(rollout); };
   const GradientReport report = CheckGradient(loss, variables);

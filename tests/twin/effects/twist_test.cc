@@ -26,7 +26,7 @@ SpringMassSystem RodSystem() {
   SpringMassSystem system;
   system.position = Rod(0);
   system.mass = Eigen::VectorXd::Ones(5);
-  system.order = Eigen::VectorXd::LinSpaced(5, 0, 0.4);
+  system.rod = PlainRod(Eigen::VectorXd::LinSpaced(5, 0, 0.4));
   return system;
 }
 
@@ -69,7 +69,7 @@ TEST(Twist, ForcesAreBalanced) {
 
 TEST(Twist, ActsOnRodsOnly) {
   SpringMassSystem system = RodSystem();
-  system.order.resize(0);
+  system.rod = {};
   EXPECT_FALSE(GetEffect("twist").MakeForce(system, Eigen::Vector2d(1e-3, 1)));
 }
 
