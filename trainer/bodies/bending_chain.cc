@@ -127,8 +127,9 @@ bool IsBendingChain(const SpringMassSystem& system) {
   const int nodes = system.node_count();
   const std::vector<std::array<int, 2>> chain = ChainSprings(system.rod, nodes);
   return std::all_of(system.springs.begin(), system.springs.end(), [&](const auto& spring) {
-    const bool controlled = std::max(spring[0], spring[1]) >= nodes;
-    return controlled || std::binary_search(chain.begin(), chain.end(), spring);
+    const std::array<int, 2> sorted = {std::min(spring[0], spring[1]),
+                                       std::max(spring[0], spring[1])};
+    return sorted[1] >= nodes || std::binary_search(chain.begin(), chain.end(), sorted);
   });
 }
 
