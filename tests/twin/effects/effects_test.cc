@@ -206,6 +206,20 @@ TEST(ControlLatency, HasTheDerivativeThatDifferencesShowIfNegative) {
   EXPECT_NE(gradient.system.effects[0][0], 0);
 }
 
+std::vector<CheckedVariable> ValuesOfAll(const RolloutGradient& gradient,
+                                         TargetedRollout* rollout) {
+  std::vector<CheckedVariable> variables;
+  for (std::size_t i = 0; i < rollout->system.effects.size(); ++i) {
+    EffectValues& effect = rollout->system.effects[i];
+    for (Eigen::Index j = 0; j < effect.values.size(); ++j) {
+      const double scale = effect.name == "rest_bend" ? 1e-3 : effect.values[j];
+      variables.push_back({effect.name + " " + std::to_string(j), &effect.values[j],
+                           kKinked * scale, gradient.system.effects[i][j]});
+    }
+  }
+  return variables;
+}
+
 // Laws of bending share the geometry of their triples.
 TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
   TargetedRollout rollout = RandomRollout(4, 1);
@@ -214,15 +228,7 @@ TEST(BendingEffects, TogetherHaveTheDerivativesThatDifferencesShow) {
     rollout.system.effects.push_back(Values(GetEffect(name), Cases().at(name).values));
   }
   const RolloutGradient gradient = Gradient<double>(rollout);
-  std::vector<CheckedVariable> variables;
-  for (std::size_t i = 0; i < rollout.system.effects.size(); ++i) {
-    EffectValues& effect = rollout.system.effects[i];
-    for (Eigen::Index j = 0; j < effect.values.size(); ++j) {
-      const double scale = effect.name == "rest_bend" ? 1e-3 : effect.values[j];
-      variables.push_back({effect.name + " " + std::to_string(j), &effect.values[j],
-                           kKinked * scale, gradient.system.effects[i][j]});
-    }
-  }
+  const std::vector<CheckedVariable> variables = ValuesOfAll(gradient, &rollout);
   const auto loss = [&] { return Loss<double>(rollout); };
   const GradientReport report = CheckGradient(loss, variables);
   EXPECT_TRUE(report.passed) << report.log;
@@ -271,16 +277,7 @@ TEST(BendingEffects, AtJointsHaveTheDerivativesThatDifferencesShow) {
     rollout.system.effects.push_back(Values(GetEffect(name), Cases().at(name).values));
   }
   const RolloutGradient gradient = Gradient<double>(rollout);
-  std::vector<CheckedVariable> variables;
-  for (std::size_t i = 0; i < rollout.system.effects.size(); ++i) {
-    EffectValues& effect = rollout.system.effects[i];
-    for (Eigen::Index j = 0; j < effect.values.size(); ++j) {
-      const double scale = effect.name == "rest_bend" ? 1e-3 : effect.values[j];
-      if (scale == 0) continue;
-      variables.push_back({effect.name + " " + std::to_string(j), &effect.values[j],
-                           kKinked * scale, gradient.system.effects[i][j]});
-    }
-  }
+  std::vector<CheckedVariable> variables = ValuesOfAll(gradient, &rollout);
   // through the motion: bends at joints depend on where nodes are
   for (int i : {0, 4, 7, 30, 31, 32, 60}) {
     variables.push_back({"velocity " + std::to_string(i), &rollout.velocity.data()[i], 1e-5,
