@@ -21,7 +21,7 @@ bool IsJudgedInBetween(const SplitRecording& split) {
 std::vector<const Effect*> EffectsFor(const std::vector<SplitRecording>& splits,
                                       const SpringMassSystem& body) {
   const bool ground = splits[0].recording->ground.has_value();
-  const BodyTraits traits = {ground, IsSolid(body), !body.rod.empty() && IsPlain(body.rod)};
+  const BodyTraits traits = {ground, IsSolid(body), IsPlain(body.rod)};
   const bool in_between = std::any_of(splits.begin(), splits.end(), IsJudgedInBetween);
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {

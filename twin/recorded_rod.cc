@@ -101,7 +101,7 @@ void KeepHoldingControllers(const Recording& recording, Rod* rod) {
 }
 
 void CutRodBetweenObjects(Recording* recording) {
-  if (recording->rod.empty() || recording->object.size() == 0) return;
+  if (recording->object.size() == 0) return;
   if (IsPlain(recording->rod)) {
     recording->rod.edges = EdgesByOrder(*recording);
   } else {
@@ -115,8 +115,7 @@ void StoreRod(const Recording& recording, Npz* arrays) {
   const Rod& rod = recording.rod;
   if (rod.empty()) return;
   if (rod.edges == EdgesByOrder(recording)) {
-    (*arrays)["order"] =
-        NpzArray::Doubles({static_cast<std::size_t>(rod.arc.size())}, rod.arc.data());
+    (*arrays)["order"] = NpzArray::Doubles({ExtentOf(rod.arc.size())}, rod.arc.data());
   } else {
     (*arrays)["rod"] = StoreRodEdges(rod.edges);
   }

@@ -111,7 +111,9 @@ int RodJoints(const Rod& rod) {
                                         [](const auto& own) { return own.size() > 2; }));
 }
 
-bool IsPlain(const Rod& rod) { return rod.edges == ChainEdges(rod.arc, ColumnsOnRod(rod)); }
+bool IsPlain(const Rod& rod) {
+  return !rod.empty() && rod.edges == ChainEdges(rod.arc, ColumnsOnRod(rod));
+}
 
 Rod RodOfEdges(RodEdges edges, const Points& position) {
   SortEdges(&edges);
@@ -197,7 +199,7 @@ std::vector<int> RodParts(const Rod& rod) {
 }
 
 void TakeOut(int column, Rod* rod) {
-  const std::vector<int> next = RodNeighbours(*rod)[column];
+  const std::vector<int> next = NeighboursOf(rod->edges, rod->arc.size())[column];
   std::erase_if(rod->edges,
                 [&](const auto& edge) { return edge[0] == column || edge[1] == column; });
   for (std::size_t i = 0; i < next.size(); ++i) {

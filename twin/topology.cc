@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -72,30 +73,31 @@ void JoinAlongRod(const Rod& rod, int reach, Springs* springs) {
   }
 }
 
+void JoinAll(const std::vector<int>& one, const std::vector<int>& other, Springs* springs) {
+  for (int a : one) {
+    for (int b : other) {
+      if (a != b) Join(a, b, springs);
+    }
+  }
+}
+
 // Joins the nodes around each joint to each other, so that the joint keeps its shape: those up to
 // kJointReach steps from it, of each two branches.
 void BraceJoints(const Rod& rod, Springs* springs) {
   const std::vector<std::vector<int>> neighbours = RodNeighbours(rod);
-  for (int joint = 0; joint < std::ssize(neighbours); ++joint) {
-    if (neighbours[joint].size() < 3) continue;
-    std::vector<std::vector<int>> branches;
-    for (int next : neighbours[joint]) {
-      std::vector<int> branch = {next};
-      for (int before = joint; std::ssize(branch) < kJointReach && neighbours[next].size() == 2;) {
-        const int after = neighbours[next][neighbours[next][0] == before ? 1 : 0];
-        before = next;
-        branch.push_back(next = after);
+  std::map<int, std::vector<std::vector<int>>> branches;  // of each joint
+  for (std::vector<int> way : RodWays(rod)) {
+    const std::ptrdiff_t reach = std::min(std::ssize(way) - 1, std::ptrdiff_t{kJointReach});
+    for (int end = 0; end < 2; ++end) {
+      if (neighbours[way[0]].size() > 2) {
+        branches[way[0]].emplace_back(way.begin() + 1, way.begin() + 1 + reach);
       }
-      branches.push_back(branch);
+      std::reverse(way.begin(), way.end());
     }
-    for (std::size_t i = 0; i < branches.size(); ++i) {
-      for (std::size_t j = i + 1; j < branches.size(); ++j) {
-        for (int a : branches[i]) {
-          for (int b : branches[j]) {
-            if (a != b) Join(a, b, springs);
-          }
-        }
-      }
+  }
+  for (const auto& [joint, own] : branches) {
+    for (auto other = own.begin(); other != own.end(); ++other) {
+      for (auto one = own.begin(); one != other; ++one) JoinAll(*one, *other, springs);
     }
   }
 }

@@ -122,8 +122,6 @@ class TwistForce : public EffectForce {
   double length_ = 0;  // L, m
 };
 
-bool IsOneRod(const SpringMassSystem& system) { return !system.rod.empty() && IsPlain(system.rod); }
-
 class TwistEffect : public Effect {
  public:
   std::string name() const override { return "twist"; }
@@ -157,11 +155,11 @@ class TwistEffect : public Effect {
   // Nothing but in one rod without joints: branches would need a twist each.
   std::unique_ptr<EffectForce> MakeForce(const SpringMassSystem& system,
                                          const Eigen::VectorXd& values) const override {
-    if (!IsOneRod(system)) return nullptr;
+    if (!IsPlain(system.rod)) return nullptr;
     return std::make_unique<TwistForce>(system, values);
   }
   void Stiffen(const Eigen::VectorXd& values, SpringMassSystem* bound) const override {
-    if (IsOneRod(*bound)) StiffenLikeBending(values[0], 0, bound);
+    if (IsPlain(bound->rod)) StiffenLikeBending(values[0], 0, bound);
   }
   EffectMjcf Mjcf(const Eigen::VectorXd&, const SpringMassSystem&) const override {
     return {EffectMjcf::Carrier::kPlugin, {}, {}, "tendons do not twist"};
