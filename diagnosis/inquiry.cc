@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "twin/effects/registry.h"
+#include "twin/effects/twist_section.h"
 
 namespace physpring {
 namespace {
@@ -21,7 +22,7 @@ bool IsJudgedInBetween(const SplitRecording& split) {
 std::vector<const Effect*> EffectsFor(const std::vector<SplitRecording>& splits,
                                       const SpringMassSystem& body) {
   const bool ground = splits[0].recording->ground.has_value();
-  const BodyTraits traits = {ground, IsSolid(body), IsPlain(body.rod)};
+  const BodyTraits traits = {ground, IsSolid(body), HasTwistSections(body.rod, body.node_count())};
   const bool in_between = std::any_of(splits.begin(), splits.end(), IsJudgedInBetween);
   std::vector<const Effect*> effects;
   for (const Effect* effect : AllEffects()) {

@@ -6,6 +6,7 @@
 
 #include "trainer/bodies/spring_net.h"
 #include "twin/effects/registry.h"
+#include "twin/effects/twist_section.h"
 #include "twin/topology.h"
 
 namespace physpring {
@@ -98,7 +99,7 @@ std::vector<EffectValues> StartEffects(const Recording& recording) {
       .node_mass = recording.mass / static_cast<double>(recording.particle_count()),
       .flexural_rigidity = kRigidity * recording.mass * gravity * length * length,
       .slip_angle = kSlip,
-      .joints = !IsPlain(recording.rod)};
+      .twists = HasTwistSections(recording.rod, recording.particle_count())};
   std::vector<EffectValues> effects;
   for (const RodPart part : {RodPart::kGiven, RodPart::kFitted}) {
     for (const Effect* effect : EffectsOfRods(part)) {

@@ -54,7 +54,7 @@ struct Setting {
 struct BodyTraits {
   bool on_ground;  // there is a ground
   bool solid;      // its springs spread in all three directions
-  bool one_rod;    // it is a rod without joints
+  bool twists;     // it is a rod with sections that are twisted (twist_section.h)
 };
 
 // A rod with which a fit starts.
@@ -63,7 +63,7 @@ struct RodTraits {
   double node_mass;          // kg
   double flexural_rigidity;  // N m^2, that would matter to it under its own weight
   double slip_angle;         // rad, by which it is bent in all where its strands begin to slip
-  bool joints;               // it has branches
+  bool twists;               // it has sections that are twisted (twist_section.h)
 };
 
 // Whether every rod has an effect, and whether a fit changes its values.

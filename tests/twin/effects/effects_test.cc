@@ -14,6 +14,7 @@
 #include "twin/effects/body_coordinate.h"
 #include "twin/effects/effect_json.h"
 #include "twin/effects/registry.h"
+#include "twin/effects/twist_section.h"
 #include "twin/error.h"
 #include "twin/recorded_input.h"
 
@@ -263,15 +264,19 @@ TEST(BendingEffects, KeepBranchesAtTheirAngles) {
   EXPECT_LT(torque.norm(), 1e-12);
 }
 
-TEST(BendingEffects, AtJointsHaveTheDerivativesThatDifferencesShow) {
-  TargetedRollout rollout = RandomRollout(4, 1);
-  RodEdges
-      edges;  // a main rod of nine nodes, the controllers at an end, and branches of every third
+// A main rod of nine nodes, the controllers at an end, and branches at every second one.
+Rod BranchedRod(const Points& position) {
+  RodEdges edges;
   for (int i = 1; i < 9; ++i) edges.push_back({i - 1, i});
   for (int i = 9; i < 25; ++i) edges.push_back({i < 14 ? 2 * (i - 9) : i - 5, i});
   edges.push_back({8, 25});
   edges.push_back({25, 26});
-  rollout.system.rod = RodOfEdges(edges, rollout.system.position);
+  return RodOfEdges(edges, position);
+}
+
+TEST(BendingEffects, AtJointsHaveTheDerivativesThatDifferencesShow) {
+  TargetedRollout rollout = RandomRollout(4, 1);
+  rollout.system.rod = BranchedRod(rollout.system.position);
   ASSERT_GT(RodJoints(rollout.system.rod), 2);
   for (const char* name : {"bending", "bending_friction", "rest_bend", "bending_damping"}) {
     rollout.system.effects.push_back(Values(GetEffect(name), Cases().at(name).values));
@@ -332,6 +337,21 @@ TEST(IsAtBound, IsNoShareOfOne) {
   const EffectParameter share = GetEffect("tension_only").parameters().at(0);
   EXPECT_EQ(share.high, 1);
   EXPECT_FALSE(IsAtBound(share, 1)) << "no spring holds at all: nothing is beyond";
+}
+
+TEST(Twist, BetweenJointsHasTheDerivativesThatDifferencesShow) {
+  TargetedRollout rollout = RandomRollout(4, 1);
+  rollout.system.rod = BranchedRod(rollout.system.position);
+  ASSERT_TRUE(HasTwistSections(rollout.system.rod, rollout.system.node_count()));
+  rollout.system.effects = {Values(GetEffect("twist"), Cases().at("twist").values)};
+  const RolloutGradient gradient = Gradient<double>(rollout);
+  const auto loss = [&] { return Loss<double>(rollout); };
+  const GradientReport report = CheckGradient(loss, ValuesOfAll(gradient, &rollout));
+  EXPECT_TRUE(report.passed) << report.log;
+  EXPECT_GT(gradient.system.effects[0].cwiseAbs().minCoeff(), 0);
+  for (const GradientReport& other : CheckRollout(rollout, kSmooth)) {
+    EXPECT_TRUE(other.passed) << other.log;
+  }
 }
 
 }  // namespace
