@@ -21,7 +21,6 @@ using Springs = std::set<std::array<int, 2>>;
 constexpr double kCoincident = 1e-7;
 // Groups of nodes further apart than this many times the widest spacing are not one object.
 constexpr double kWidestGap = 5;
-constexpr int kJointReach = 2;  // steps from a joint
 
 Error CoincidentParticles(const std::string& where, int a, int b) {
   return Error(fmt::format("{}: particles {} and {} are at the same place; keep one of them", where,
@@ -82,12 +81,12 @@ void JoinAll(const std::vector<int>& one, const std::vector<int>& other, Springs
 }
 
 // Joins the nodes around each joint to each other, so that the joint keeps its shape: those up to
-// kJointReach steps from it, of each two branches.
-void BraceJoints(const Rod& rod, Springs* springs) {
+// `most` steps from it, of each two branches.
+void BraceJoints(const Rod& rod, int most, Springs* springs) {
   const std::vector<std::vector<int>> neighbours = RodNeighbours(rod);
   std::map<int, std::vector<std::vector<int>>> branches;  // of each joint
   for (std::vector<int> way : RodWays(rod)) {
-    const std::ptrdiff_t reach = std::min(std::ssize(way) - 1, std::ptrdiff_t{kJointReach});
+    const std::ptrdiff_t reach = std::min(std::ssize(way) - 1, std::ptrdiff_t{most});
     for (int end = 0; end < 2; ++end) {
       if (neighbours[way[0]].size() > 2) {
         branches[way[0]].emplace_back(way.begin() + 1, way.begin() + 1 + reach);
@@ -102,10 +101,10 @@ void BraceJoints(const Rod& rod, Springs* springs) {
   }
 }
 
-Springs SpringsAlong(const Rod& rod, int reach) {
+Springs SpringsAlong(const Rod& rod, int reach, int joint_reach) {
   Springs springs;
   JoinAlongRod(rod, reach, &springs);
-  BraceJoints(rod, &springs);
+  BraceJoints(rod, joint_reach, &springs);
   return springs;
 }
 
@@ -235,7 +234,7 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
                 options.controller_max_neighbours, &springs);
   } else {
     const Rod alone = RodOfNodes(rod, nodes);
-    springs = SpringsAlong(alone, std::max(1, options.max_neighbours / 2));
+    springs = SpringsAlong(alone, std::max(1, options.max_neighbours / 2), options.joint_reach);
     JoinGroups(free, LongestEdge(alone, free, where), where, &springs);
     JoinNearestOnRod(rod, position, nodes, options, where, &springs);
   }
@@ -249,7 +248,7 @@ std::vector<std::array<int, 2>> BuildSprings(const Points& position, int control
 }
 
 std::vector<std::array<int, 2>> ChainSprings(const Rod& rod, int nodes) {
-  const Springs springs = SpringsAlong(RodOfNodes(rod, nodes), 1);
+  const Springs springs = SpringsAlong(RodOfNodes(rod, nodes), 1, TopologyOptions::kBracedJoint);
   return {springs.begin(), springs.end()};
 }
 

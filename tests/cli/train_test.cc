@@ -181,6 +181,19 @@ TEST_F(Train, WarnsOfAControllerThatNoSpringJoins) {
   EXPECT_EQ(ReadTwin(twin_).levels[0].system.UnjoinedControllers(), std::vector<int>{1});
 }
 
+TEST_F(Train, WarnsOfAnotherRod) {
+  EXPECT_EQ(RunProgram(Short("two-stage")).errors.find("training goes by"), std::string::npos);
+  Recording rope = MovingRope(8, 10);
+  rope.rod = PlainRod(Eigen::VectorXd::LinSpaced(rope.rest.cols(), 0, 0.3));
+  WriteRecording(rope, other_);
+  const ProgramResult result = RunProgram(Short("two-stage") + Words{"--force"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_NE(result.errors.find("warning: recording other: has another rod; training goes by rope, "
+                               "which has none"),
+            std::string::npos)
+      << result.errors;
+}
+
 // The report names what took the time: no step that did nothing is a part of it.
 TEST_F(Train, ReportsWhereTheTimeWent) {
   const Words levels{"--levels",    "2",      "--ratios",         "0.5",

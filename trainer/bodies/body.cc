@@ -19,7 +19,8 @@ constexpr int kMostPerWanted = 4;  // no particle has more than so many times th
 }  // namespace
 
 std::string Body::Label() const {
-  return fmt::format("{} neighbours{}{}{}", neighbours, kind->Addition(),
+  return fmt::format("{} neighbours{}{}{}{}", neighbours, kind->Addition(),
+                     braced_joints ? "" : ", joints that bend",
                      controller_velocity ? "" : ", controllers without velocity",
                      cone == FrictionCone::kElliptic ? "" : ", pyramidal friction");
 }
@@ -39,6 +40,7 @@ Body WithSoftSprings(const Body& body, const Recording& recording) {
 
 SpringMassSystem StartSystem(const Recording& recording, const Body& body, double start_substeps) {
   TopologyOptions topology;
+  if (!body.braced_joints) topology.joint_reach = 0;
   topology.max_neighbours = topology.controller_max_neighbours = body.neighbours;
   if (body.radius > 0) {
     topology.radius = topology.controller_radius = body.radius;

@@ -53,6 +53,7 @@ struct Body {
   Eigen::VectorXd strain = {};    // (springs) shares of the strain in frame 0; empty: stress-free
   double stretch = 0;             // the largest strain in frame 0
   double soft_beyond = kNowhere;  // m: springs that are longer begin soft in a smooth body
+  bool braced_joints = true;      // those of a rod with branches keep their shape (topology.h)
 
   std::string Label() const;
 };

@@ -57,6 +57,10 @@ std::vector<Body> CandidateBodies(const Recording& recording, const TrainOptions
     // nets fit a rod with branches no better and predict it far worse
     if (!IsPlain(recording.rod)) candidates.clear();
     candidates.push_back(chain);
+    if (RodJoints(recording.rod) > 0) {
+      candidates.push_back(chain);
+      candidates.back().braced_joints = false;
+    }
   }
   return candidates;
 }

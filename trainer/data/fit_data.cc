@@ -51,6 +51,18 @@ void WarnOfMass(const Recording& first, Recording* recording) {
       recording->name, recording->mass, first.mass, first.name));
 }
 
+// Hands that let go are no part of a rod, so that its nodes are compared.
+void WarnOfRod(const Recording& first, Recording* recording) {
+  const auto edges = [](const Recording& one) {
+    return one.rod.empty() ? RodEdges() : RodOfNodes(one.rod, one.particle_count()).edges;
+  };
+  if (edges(first) == edges(*recording)) return;
+  recording->warnings.push_back(
+      fmt::format("recording {}: {}; training goes by {}, which {}", recording->name,
+                  recording->rod.empty() ? "has no rod" : "has another rod", first.name,
+                  first.rod.empty() ? "has none" : "has one"));
+}
+
 // Whether a particle is seen after frame 0, in the frames for fitting.
 bool SeesMotion(const Recording& recording) {
   for (int t = 1; t < recording.train_frames; ++t) {
@@ -81,6 +93,7 @@ void Add(const std::vector<RecordingEntry>& entries, Recording recording, FitDat
   }
   ExpectNew(recordings, entries);
   WarnOfMass(recordings[0], &recordings.back());
+  WarnOfRod(recordings[0], &recordings.back());
   WarnOfOddNumbering(recordings[0], entry.path, &recordings.back());
   WarnOfMovedGrasps(recordings[0], &recordings.back());
   const int own = -static_cast<int>(recordings.size());

@@ -9,18 +9,13 @@
 #include "trainer/motion/observer.h"
 #include "trainer/motion/track_error.h"
 #include "trainer/network/level_network.h"
+#include "trainer/projection/soften_level.h"
 #include "twin/stability.h"
 
 namespace physpring {
 namespace {
 
 constexpr int kMostJudgingRecordings = 4;  // frames are held back on no more than these
-
-// The most sub-steps of a frame: as many as level 0 needs.
-int MostSubsteps(const TwinLevel& dense, double fps) {
-  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
-                  static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
-}
 
 }  // namespace
 
@@ -30,14 +25,11 @@ LevelModel::LevelModel(const FitData& data, const TrainOptions& options, const T
       options_(options),
       twin_(twin),
       level_(static_cast<int>(twin.levels.size()) - 1),
-      most_substeps_(MostSubsteps(twin.levels[0], data.recordings[0].fps)),
+      most_substeps_(MostSubstepsOfLevels(twin.levels[0], data.recordings[0].fps)),
       held_back_(HoldBack(data, kMostJudgingRecordings)),
       network_(network) {
   if (options_.substeps > 0) return;
-  // a projection sums the springs between clusters, and a light cluster may get many
-  SpringMassSystem& system = twin_.levels.back().system;
-  const double timestep = 1 / (first().fps * most_substeps_ * kStepSafety);
-  if (ComputeStabilityBound(system).timestep < timestep) SoftenStiffNodes(timestep, &system);
+  SoftenLevel(most_substeps_, first().fps, &twin_.levels.back().system);
 }
 
 Parameters LevelModel::CommonParameters() const {

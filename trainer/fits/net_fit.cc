@@ -24,13 +24,19 @@ constexpr double kWorthIt = 0.95;  // bodies of more numbers must lower the erro
 
 // Parts of the work, as measured on recordings of 80 to 500 particles.
 constexpr double kSmoothPart = 0.28, kRefined = 0.32, kAllFramesPart = 0.35, kTriedSmooth = 0.4,
-                 kTriedStiffnesses = 0.45, kTried = 0.6, kCommon = 0.65;
+                 kTriedStiffnesses = 0.45, kTried = 0.6, kCommon = 0.65, kGoneOn = 0.9;
 
 bool HasManyParticles(const FitData& data) {
   return ParticleFrames(data, kMostSpringRecordings) > kMostParticleFrames;
 }
 
 enum class Kind { kSmooth, kStiffnesses, kSprings };
+
+// A kind of body, and one of it that was fitted to a part of the data.
+struct Tried {
+  Kind kind;
+  SpringMassSystem system;
+};
 
 class NetFit {
  public:
@@ -49,12 +55,15 @@ class NetFit {
   RolloutOptions FreeMotion(const Body& body) const {
     return FollowOptions(data_.recordings[0], body, options_).rollout;
   }
+  double ErrorOf(const SpringMassSystem& system, const Body& body) const {
+    return GeometricTrackError(system, episodes_, FrameUse::kFit, FreeMotion(body));
+  }
   double ErrorOf(const ChosenBody& model) const {
-    return GeometricTrackError(model.System(data_.recordings[0]), episodes_, FrameUse::kFit,
-                               FreeMotion(model.body));
+    return ErrorOf(model.System(data_.recordings[0]), model.body);
   }
   SmoothlyChosen FitSmooth();
-  Kind BestPredictor(const SmoothlyChosen& smooth) const;
+  Tried BestPredictor(const SmoothlyChosen& smooth) const;
+  SpringMassSystem FitAll(const Tried& tried, const SpringMassSystem& smooth) const;
   ChosenBody WithCommonFactors(const ChosenBody& model, const Work& work) const;
   FittedNet FitSpringsAlone() const;
 
@@ -109,17 +118,17 @@ SmoothlyChosen NetFit::FitSmooth() {
 
 // What predicts best what is held back; of bodies that predict about as well, the one of the fewest
 // numbers.
-Kind NetFit::BestPredictor(const SmoothlyChosen& smooth) const {
+Tried NetFit::BestPredictor(const SmoothlyChosen& smooth) const {
   const HeldBackMotion held_back = HoldBackMotion(data_, kMostCommonRecordings);
   const std::vector<Episode> judged = held_back.JudgedEpisodes();
   const std::vector<Episode> fit = FitEpisodes(held_back.fit, kMostCommonRecordings);
-  Kind best = Kind::kSmooth;
+  Tried best{Kind::kSmooth, {}};
   double least = kInfinity;
   const auto judge = [&](Kind kind, const SpringMassSystem& system) {
     const double error =
         GeometricTrackError(system, judged, FrameUse::kHeld, FreeMotion(model_.body));
     if (error >= kWorthIt * least) return;
-    best = kind;
+    best = {kind, system};
     least = error;
   };
   const SpringMassSystem tried =
@@ -160,6 +169,30 @@ FittedNet NetFit::FitSpringsAlone() const {
           options_.substeps};
 }
 
+// A body of the kind that predicts best, fitted to all data. From common factors on it may get lost
+// where it was not when it was tried: it then goes on from there. A body that has more numbers than
+// the smooth one and fits worse did not arrive, and is not taken.
+SpringMassSystem NetFit::FitAll(const Tried& tried, const SpringMassSystem& smooth) const {
+  const Recording& first = data_.recordings[0];
+  const double bound = ErrorOf(smooth, model_.body);
+  const auto arrived = [&](const SpringMassSystem& one) {
+    return ErrorOf(one, model_.body) <= bound;
+  };
+  if (tried.kind == Kind::kStiffnesses) {
+    const SpringMassSystem own =
+        FitStiffnesses(smooth, model_.body, data_, options_, work_.Part("stiffnesses", kTried, 1));
+    return arrived(own) ? own : smooth;
+  }
+  SpringMassSystem own =
+      FitSpringsOf(WithCommonFactors(model_, work_.Stretch("all", kTried, kCommon)), data_,
+                   options_, work_.Part("single springs", kCommon, kGoneOn));
+  if (arrived(own)) return own;
+  const SpringMassSystem gone_on =
+      WithOwnValues(SpringFactors(tried.system, first, *model_.body.kind), model_.body, data_,
+                    options_, work_.Part("single springs, from the trial", kGoneOn, 1));
+  return arrived(gone_on) ? gone_on : smooth;
+}
+
 FittedNet NetFit::Run() {
   const bool smooth_only = options_.method == TrainOptions::Method::kSmooth;
   if (AsksForSprings(options_)) return FitSpringsAlone();
@@ -168,19 +201,9 @@ FittedNet NetFit::Run() {
   if (smooth_only || smooth.correlation < kSurelyNoise || LeavesOutSingleValues(data_, options_)) {
     return {system, model_.body, options_.substeps};
   }
-  switch (BestPredictor(smooth)) {
-    case Kind::kStiffnesses:
-      return {FitStiffnesses(system, model_.body, data_, options_,
-                             work_.Part("stiffnesses", kTried, 1)),
-              model_.body, options_.substeps};
-    case Kind::kSprings:
-      return {FitSpringsOf(WithCommonFactors(model_, work_.Stretch("all", kTried, kCommon)), data_,
-                           options_, work_.Part("single springs", kCommon, 1)),
-              model_.body, options_.substeps};
-    case Kind::kSmooth:
-      break;
-  }
-  return {system, model_.body, options_.substeps};
+  const Tried best = BestPredictor(smooth);
+  if (best.kind == Kind::kSmooth) return {system, model_.body, options_.substeps};
+  return {FitAll(best, system), model_.body, options_.substeps};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "trainer/motion/track_error.h"
 #include "trainer/network/level_network.h"
 #include "trainer/projection/galerkin.h"
+#include "trainer/projection/soften_level.h"
 #include "trainer/solvers/adam.h"
 #include "twin/parallel.h"
 
@@ -44,6 +45,11 @@ double TopologyFit::PredictionError(const Assignment& assignment) const {
   Twin twin = twin_;
   twin.levels.push_back(
       {Project(twin_.levels.back().system, assignment, up_).system, assignment, 0});
+  SpringMassSystem& system = twin.levels.back().system;
+  if (options_.substeps == 0) {
+    const double fps = episodes_[0].recording->fps;
+    SoftenLevel(MostSubstepsOfLevels(twin.levels[0], fps), fps, &system);
+  }
   LiftedMotion::Options options;
   options.rollout.single_precision = true;
   options.rollout.controller_velocity = twin.controller_velocity;
@@ -51,7 +57,6 @@ double TopologyFit::PredictionError(const Assignment& assignment) const {
   options.rollout.observer_gain = kDrawGain;
   options.most_substeps = std::numeric_limits<int>::max();
   const LiftedMotion level(twin, static_cast<int>(twin_.levels.size()), episodes_, options);
-  const SpringMassSystem& system = twin.levels.back().system;
   const auto moved = level.Run(system, level.SubstepsOf(system));
   if (!moved) return kDiverged;
   double sum = 0;

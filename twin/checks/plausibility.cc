@@ -9,6 +9,7 @@
 #include "twin/checks/frame_times.h"
 #include "twin/checks/grasp.h"
 #include "twin/checks/motion_scale.h"
+#include "twin/checks/rod_shape.h"
 #include "twin/checks/smooth_motion.h"
 
 namespace physpring {
@@ -79,8 +80,9 @@ std::vector<std::string> FindOddities(const Recording& recording) {
   CheckMotion(recording, scale, &lines);
   CheckGround(recording, scale, &lines);
   if (!lines.empty()) return lines;  // what follows takes these to be right
-  for (const std::string& line : {OddGravity(recording, scale), FarGrasp(recording, scale),
-                                  ReleasedGrasp(recording, scale), OddFrameTimes(recording)}) {
+  for (const std::string& line :
+       {OddGravity(recording, scale), FarGrasp(recording, scale), ReleasedGrasp(recording, scale),
+        OddRod(recording, scale), OddFrameTimes(recording)}) {
     if (!line.empty()) lines.push_back(line);
   }
   return lines;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/swung_rope.h"
 #include "trainer/bodies/factors.h"
 #include "twin/effects/effect_set.h"
@@ -26,20 +28,42 @@ TEST(Candidates, OfARodEndWithAChainThatBends) {
   EXPECT_EQ(CommonFactors(system, Rod(), *chain.kind).effect_count(), 1 + 2 + 16 + 2);
 }
 
-// Branches would need a twist each; nets do not predict.
-TEST(Candidates, OfARodWithBranchesAreOneChainWithoutTwist) {
+// Nets do not predict.
+TEST(Candidates, OfARodWithBranchesAreChainsWhoseJointsAreBracedOrBend) {
   Recording rod = Rod();
   RodEdges edges = rod.rod.edges;
   std::swap(edges.back()[0], edges.front()[0]);
   edges.push_back({3, 9});
   rod.rod = RodOfEdges(edges, rod.rest);
   ASSERT_GT(RodJoints(rod.rod), 0);
-  ASSERT_EQ(CandidateBodies(rod, {}).size(), 1U);
-  const Body chain = CandidateBodies(rod, {})[0];
-  const SpringMassSystem system = StartSystem(rod, chain, 8);
-  EXPECT_EQ(system.effects.size(), 4U);
-  EXPECT_NO_THROW(system.Validate("chain"));
-  EXPECT_EQ(CommonFactors(system, rod, *chain.kind).effect_count(), 1 + 2 + 16);
+  ASSERT_EQ(CandidateBodies(rod, {}).size(), 2U);
+  const Body braced = CandidateBodies(rod, {})[0], bends = CandidateBodies(rod, {})[1];
+  EXPECT_NE(braced.Label(), bends.Label());
+  for (const Body& chain : {braced, bends}) {
+    EXPECT_FALSE(chain.kind->has_single_springs());
+    const SpringMassSystem system = StartSystem(rod, chain, 8);
+    EXPECT_EQ(system.effects.size(), 5U);
+    EXPECT_NO_THROW(system.Validate("chain"));
+    EXPECT_EQ(CommonFactors(system, rod, *chain.kind).effect_count(), 1 + 2 + 16 + 2);
+    const std::array<int, 2> across{2, 4};  // the joint 3
+    EXPECT_EQ(std::count(system.springs.begin(), system.springs.end(), across),
+              chain.braced_joints ? 1 : 0);
+  }
+}
+
+// What no hand and no joint holds at both ends is not twisted.
+TEST(Candidates, OfABranchedRodWithFreeEndsHaveNoTwist) {
+  Recording rod = Rod();
+  RodEdges edges = rod.rod.edges;
+  std::erase_if(edges, [&](const auto& edge) { return edge[1] >= rod.particle_count(); });
+  edges.push_back({3, 9});
+  const auto effects = [&] {
+    rod.rod = RodOfEdges(edges, rod.rest);
+    return StartSystem(rod, CandidateBodies(rod, {})[0], 8).effects.size();
+  };
+  EXPECT_EQ(effects(), 5U);  // two sections from the joint 3 to the joint 9
+  std::erase(edges, std::array<int, 2>{8, 9});
+  EXPECT_EQ(effects(), 4U);  // three branches from the joint 3
 }
 
 // Nodes that go to and fro across the rod, every other one the other way: its shortest wave.

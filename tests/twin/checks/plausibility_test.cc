@@ -53,6 +53,24 @@ TEST(Oddities, TellASceneWhereNothingMoves) {
   EXPECT_THAT(FindOddities(frozen), ElementsAre(HasSubstr("while the controllers move by")));
 }
 
+TEST(Oddities, TellARodThatIsNotTheObjects) {
+  Recording rope = PlainRope().Record();
+  RodEdges along;
+  for (int i = 0; i + 1 < rope.particle_count(); ++i) along.push_back({i, i + 1});
+  rope.rod = RodOfEdges(along, rope.rest);
+  EXPECT_THAT(FindOddities(rope), IsEmpty());
+  rope.rod = RodOfEdges(along, 2 * rope.rest);
+  EXPECT_THAT(FindOddities(rope), ElementsAre(HasSubstr("the rod is 2 times as long")));
+  RodEdges scrambled;  // from one half of the rope to the other one and back
+  const int half = rope.particle_count() / 2;
+  for (int i = 0; i < half; ++i) {
+    scrambled.push_back({i, i + half});
+    if (i + 1 < half) scrambled.push_back({i + 1, i + half});
+  }
+  rope.rod = RodOfEdges(scrambled, rope.rest);
+  EXPECT_THAT(FindOddities(rope), ElementsAre(HasSubstr("follow each other along the rod")));
+}
+
 TEST(Oddities, TellAWristFromAGrasp) {
   Recording wrist = PlainRope().Record();
   for (Points& frame : wrist.controllers) frame.row(2).array() += 0.1;
