@@ -50,7 +50,7 @@ inline Recording MakeRecording() {
   recording.rest = MakePoints(5, 0);
   recording.rest_given = true;
   recording.velocity = MakePoints(4, -2);
-  recording.rod = PlainRod(Eigen::VectorXd::LinSpaced(5, 0, 0.4));
+  recording.rod = PlainRod(Eigen::VectorXd::LinSpaced(5, 0, 5));
   recording.train_frames = 3;
   return recording;
 }

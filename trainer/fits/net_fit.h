@@ -24,9 +24,9 @@ struct FittedNet {
 // body. Where the options ask for steps or an optimizer of single springs, it has these. Else:
 //   1. A smooth body is chosen and fitted (smooth_choice.h). One that surely leaves no more than
 //      noise stays.
-//   2. Else, and not if LeavesOutSingleValues, all kinds are fitted to a part of the data and
-//   judged
-//      on the rest by free motions (held_back.h). The best one is fitted to all.
+//   2. Else, and not if LeavesOutSingleValues, all kinds are fitted to a part of the data, and
+//      judged on the rest by free motions (held_back.h). The best one is fitted to all, and taken
+//      if it then fits no worse than the smooth body.
 FittedNet FitNet(const ChosenBody& chosen, const FitData& data, const TrainOptions& options,
                  const Work& work);
 
