@@ -201,7 +201,8 @@ void TwistSection::AddSlopeAdjoint(const Points& x, const Points& slope_bar, Poi
 std::vector<TwistSection> FindTwistSections(const SpringMassSystem& system) {
   std::vector<TwistSection> sections;
   if (IsPlain(system.rod)) {
-    sections.emplace_back(FindBendingTriples(system));
+    std::vector<BendingTriple> triples = FindBendingTriples(system);
+    if (!triples.empty()) sections.emplace_back(std::move(triples));
     return sections;
   }
   for (const TwistWay& way : TwistWays(system.rod, system.node_count())) {

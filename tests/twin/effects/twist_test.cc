@@ -159,6 +159,14 @@ TEST(Twist, BetweenJointsIsBalanced) {
   EXPECT_EQ(balanced, 1);
 }
 
+TEST(Twist, TwoColumnsHaveNone) {
+  SpringMassSystem system = RodSystem();
+  system.position = system.position.leftCols(2).eval();
+  system.mass = Eigen::VectorXd::Ones(2);
+  system.rod = PlainRod(Eigen::Vector2d(0, 0.1));
+  EXPECT_FALSE(GetEffect("twist").MakeForce(system, Eigen::Vector2d(1e-3, 1)));
+}
+
 TEST(Twist, BranchesWithAFreeEndHaveNone) {
   SpringMassSystem system = JoinedSystem();
   EXPECT_EQ(FindTwistSections(system).size(), 3U);
