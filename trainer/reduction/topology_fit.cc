@@ -36,6 +36,7 @@ TopologyFit::TopologyFit(const ReductionTask& task)
       nodes_(task.nodes),
       up_(task.up),
       episodes_(FitEpisodes(task.data, kMostRecordings)),
+      most_substeps_(MostSubstepsOfLevels(twin_.levels[0], episodes_.at(0).recording->fps)),
       weights_(task.weights),
       adam_mean_(Eigen::VectorXd::Zero(task.weights.size())),
       adam_mean_square_(adam_mean_) {}
@@ -46,10 +47,7 @@ double TopologyFit::PredictionError(const Assignment& assignment) const {
   twin.levels.push_back(
       {Project(twin_.levels.back().system, assignment, up_).system, assignment, 0});
   SpringMassSystem& system = twin.levels.back().system;
-  if (options_.substeps == 0) {
-    const double fps = episodes_[0].recording->fps;
-    SoftenLevel(MostSubstepsOfLevels(twin.levels[0], fps), fps, &system);
-  }
+  if (options_.substeps == 0) SoftenLevel(most_substeps_, episodes_[0].recording->fps, &system);
   LiftedMotion::Options options;
   options.rollout.single_precision = true;
   options.rollout.controller_velocity = twin.controller_velocity;

@@ -55,6 +55,7 @@ class TopologyFit {
   int nodes_;
   Eigen::Vector3d up_;
   std::vector<Episode> episodes_;
+  const int most_substeps_;  // of a frame, of the levels that are drawn
 
   // Everything that the next step depends on, besides the above.
   int iteration_ = 0;
