@@ -11,6 +11,7 @@ import numpy as np
 from safe_pickle import Error
 
 KEYS = ("fx", "fy", "cx", "cy")
+JUMP = 0.02  # of the depth, from one pixel to the next: an edge
 
 
 class Camera:
@@ -44,14 +45,24 @@ class Camera:
 
 
 def depth_at(image, pixels):
-    """Depth of the pixels nearest to (u, v), (N, 2); NaN outside of the image, or where it is 0."""
+    """Depth of what is seen at (u, v), (N, 2); NaN outside of the image, or where it is 0. It is the
+    nearest pixel's. At an edge, where depth jumps among the 3 x 3 pixels around, it is the median
+    of the near side: the pixel may show what is behind, but a point that is seen is in front."""
     height, width = image.shape
     column, row = np.rint(pixels[:, 0]), np.rint(pixels[:, 1])
     inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
     column = np.where(inside, column, 0).astype(int)
     row = np.where(inside, row, 0).astype(int)
-    depth = image[row, column]
-    return np.where(inside & (depth > 0) & np.isfinite(depth), depth, np.nan)
+    around = np.array([image[np.clip(row + i, 0, height - 1), np.clip(column + j, 0, width - 1)]
+                       for i in (-1, 0, 1) for j in (-1, 0, 1)], float)
+    around = np.where((around > 0) & np.isfinite(around), around, np.nan)
+    depth = around[4]
+    rising = np.sort(around, axis=0)  # NaN last
+    rise = np.nan_to_num(np.diff(rising, axis=0), nan=0)
+    last = rise.argmax(axis=0)
+    jumps = rise.max(axis=0) > JUMP * np.nan_to_num(rising[0], nan=np.inf)
+    near = np.take_along_axis(rising, last[None] // 2, axis=0)[0]
+    return np.where(inside, np.where(jumps, near, depth), np.nan)
 
 
 def thinned(points, most):

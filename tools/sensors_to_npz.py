@@ -183,6 +183,8 @@ def recording_of(options):
                   for name, p in arrays.items()}
     arrays = {name: positions.astype(np.float32) for name, positions in arrays.items()}
     arrays["fps"] = np.float64(options.fps)
+    if options.ground is not None:
+        arrays["ground"] = np.array([0, 0, 1, options.ground])
     if options.mass:
         arrays["mass"] = np.float64(options.mass)
     return arrays
@@ -210,6 +212,9 @@ def parse(arguments):
                              "'controllers' of a .npz")
     common.add_argument("--fps", type=positive, help="frames a second")
     common.add_argument("--mass", type=positive, help="of the object, kg")
+    common.add_argument("--ground", type=float, metavar="HEIGHT",
+                        help="of the table or floor that the object touches, m, along the axis that "
+                             "points up (default: there is none)")
     common.add_argument("--up", choices=["z", "y"], default="z", help="the axis that points up")
     common.add_argument("--force", action="store_true", help="overwrite a file")
     depth = argparse.ArgumentParser(add_help=False)

@@ -25,6 +25,8 @@ struct PlainRope {
   double before = 0;      // s of motion before frame 0
   double released = 1e9;  // s, when the hand lets go
   Eigen::Vector3d hangs_from{0, 0, 1};
+  Eigen::Vector3d along{0, 0, -1};  // from there at the start
+  double floor = -1e9;              // height of one without friction, m
   unsigned seed = 1;
   std::function<Eigen::Vector3d(double)> hand = [](double t) {  // m, from where it holds at t = 0
     return Eigen::Vector3d(0.1 * std::sin(5 * t), 0.05 * std::sin(7 * t), 0);
@@ -36,8 +38,7 @@ struct PlainRope {
 inline Recording PlainRope::Record() const {
   const Eigen::Vector3d gravity(0, 0, -9.81);
   Points x(3, masses), v = Points::Zero(3, masses);
-  for (int i = 0; i < masses; ++i)
-    x.col(i) = hangs_from + hand(-before) - Eigen::Vector3d(0, 0, i * spacing);
+  for (int i = 0; i < masses; ++i) x.col(i) = hangs_from + hand(-before) + i * spacing * along;
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, noise);
   const int steps = 60;
@@ -64,6 +65,9 @@ inline Recording PlainRope::Record() const {
     }
     v += h / mass * force;
     if (t < released) v.col(0).setZero();
+    for (int i = 0; i < masses; ++i) {
+      if (x(2, i) <= floor) v(2, i) = std::max(v(2, i), 0.0);
+    }
     x += h * v;
   }
   recording.fps = fps;

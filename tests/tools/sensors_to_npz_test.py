@@ -19,6 +19,7 @@ except ImportError:
     print("skipped: needs numpy")
     sys.exit(77)
 import sensors_to_npz
+from depth_camera import depth_at
 
 WIDTH, HEIGHT, FRAMES = 160, 120, 5
 LENS = {"fx": 150.0, "fy": 140.0, "cx": 80.0, "cy": 60.0}
@@ -115,6 +116,19 @@ class SensorsTest(unittest.TestCase):
         self.assertEqual(arrays["fps"], 30)
         self.assertEqual(arrays["mass"], 0.2)
         self.assertEqual(arrays["controllers"].shape, (FRAMES, 2, 3))
+
+    def test_the_ground_is_where_it_is_said_to_be(self):
+        file, _, depths, camera = self.write_view(0)
+        words = ["tracks", "--view", file, depths, camera, "--ground", "-0.1"]
+        np.testing.assert_array_equal(self.convert(*words)["ground"], [0, 0, 1, -0.1])
+        self.assertNotIn("ground", self.convert(*words[:-2]))
+
+    def test_at_an_edge_a_point_has_the_depth_of_the_near_side(self):
+        image = np.full((9, 9), 2.0)
+        image[:, 4:] = np.linspace(1, 1.004, 5)  # a surface in front of another one
+        image[0, 0] = 0
+        at = depth_at(image, np.array([[3.4, 5], [3.6, 5], [6.2, 5], [1, 5], [0, 0], [9, 9]]))
+        np.testing.assert_allclose(at, [1, 1, 1.002, 2, np.nan, np.nan], atol=1e-9)
 
     def test_two_cameras_give_their_points_side_by_side(self):
         views = [self.write_view(number) for number in (0, 1)]

@@ -95,6 +95,18 @@ TEST(Oddities, TellAGroundThatDoesNotSupport) {
   EXPECT_THAT(FindOddities(recording), IsEmpty());
 }
 
+TEST(Oddities, TellALyingObjectWithoutAGround) {
+  PlainRope rope;
+  rope.along = {1, 0, 0};
+  rope.hand = [](double t) { return Eigen::Vector3d(0, 0, 0.15 * t); };
+  EXPECT_THAT(FindOddities(rope.Record()), IsEmpty()) << "it falls from where it was";
+  rope.floor = 1;
+  Recording lifted = rope.Record();
+  EXPECT_THAT(FindOddities(lifted), ElementsAre(HasSubstr("lies flat at a height of 0.999 m")));
+  lifted.ground = Eigen::Vector4d(0, 0, 1, 1);
+  EXPECT_THAT(FindOddities(lifted), IsEmpty());
+}
+
 TEST(TooLittle, IsExplainedByATwinThatLeavesHalf) {
   EXPECT_EQ(TooLittleExplained(0.04, 0.1, 5e-4), "");
   EXPECT_THAT(TooLittleExplained(0.08, 0.1, 5e-4),
