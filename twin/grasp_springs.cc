@@ -43,6 +43,7 @@ void GraspSprings<Real>::Attach(const Attachment& attachment, State* state) cons
 template <class Real>
 void GraspSprings<Real>::Apply(const ControllerMask& released, const State& state,
                                LevelStep<Real>* step) const {
+  step->Release(released);
   const Real* shift = Shifts(state);
   for (const Spring& spring : springs_) {
     if (Has(released, spring.controller)) {

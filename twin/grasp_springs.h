@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The springs of controllers that let go and take hold. Where a controller is released, its springs
-// have no stiffness and no dashpot. One that takes hold within a motion takes the body as it is
-// then (of a recording: as measured). At that moment its springs are as long or as short of their
-// rest lengths L as in the reference configuration X. So the rest lengths become
+// have no stiffness and no dashpot, and nothing bends or twists about it. One that takes hold
+// within a motion takes the body as it is then (of a recording: as measured). At that moment its
+// springs are as long or as short of their rest lengths L as in the reference configuration X. So
+// the rest lengths become
 //   L_e + s_e,   s_e = |x_c - x_i| - |X_c - X_i|
 // These shifts s are part of the state. They stand behind the effects' internal variables, eight to
 // a record, and are 0 at first.

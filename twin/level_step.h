@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "twin/contact.h"
+#include "twin/controller_mask.h"
 #include "twin/effects/effect_step.h"
 #include "twin/kernel_choice.h"
 #include "twin/node_state.h"
@@ -83,6 +84,8 @@ class LevelStep {
     springs_.rest_length[slot] = std::max(springs_.rest_length[slot] + shift, shortest);
   }
   void OpenSpring(int slot) { springs_.stiffness[slot] = springs_.dashpot[slot] = 0; }
+  // Effects no longer act on these controllers.
+  void Release(const ControllerMask& released) { released_ = released; }
 
   const SpringBlocks<Real>& springs() const { return springs_; }
   const Contact<Real>& contact() const { return contact_; }
@@ -118,14 +121,16 @@ class LevelStep {
   // What its effects see of a sub-step.
   EffectSubstep<Real> EffectsOf(const LevelSubstep<Real>& now, const State& state) const {
     return {*kernel_, springs_.View(), now.start + now.elapsed,
-            now.h,    state,           now.controller_velocity};
+            now.h,    state,           now.controller_velocity,
+            released_};
   }
 
  private:
   const Kernel<Real>* kernel_;
   SpringBlocks<Real> springs_;
   Contact<Real> contact_;
-  Eigen::Vector3d gravity_;                          // the environment's, m/s^2
+  Eigen::Vector3d gravity_;  // the environment's, m/s^2
+  ControllerMask released_;
   std::shared_ptr<const EffectStep<Real>> effects_;  // never null; of no effects, it adds nothing
 };
 

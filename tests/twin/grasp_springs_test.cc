@@ -139,6 +139,63 @@ TEST_F(ReleasedRope, HasTheRightGradient) {
   }
 }
 
+// The same as a rod that both hands are part of.
+class ReleasedRod : public ReleasedRope {
+ protected:
+  ReleasedRod() {
+    RodEdges edges = {{kParticles, 0}};  // the upper hand
+    for (int i = 0; i + 1 < kParticles; ++i) edges.push_back({i, i + 1});
+    without_hand_ = RodOfEdges(edges, system_.position);
+    edges.push_back({kParticles - 1, kParticles + 1});
+    system_.rod = RodOfEdges(edges, system_.position);
+    system_.effects = {{"bending", Eigen::VectorXd::Constant(1, 2e-6)},
+                       {"bending_damping", Eigen::VectorXd::Constant(1, 1e-8)},
+                       {"bending_friction", Eigen::Vector2d(1e-6, 1)}};
+  }
+
+  Rod without_hand_;
+};
+
+TEST_F(ReleasedRod, IsNotBentByTheHand) {
+  recording_.held.col(1).setConstant(false);
+  SpringMassSystem shorter = system_, straight = system_;
+  shorter.rod = without_hand_;
+  straight.effects.clear();
+  const Points end = RollOut(system_, All(), Options())->positions().back();
+  const auto apart = [&](const SpringMassSystem& other) {
+    return (RollOut(other, All(), Options())->positions().back() - end).norm();
+  };
+  EXPECT_LT(apart(shorter), 1e-12);  // its triples are in another order
+  EXPECT_GT(apart(straight), 1e-4);
+}
+
+TEST_F(ReleasedRod, IsNotTwistedByTheHand) {
+  recording_.held.col(1).setConstant(false);
+  SpringMassSystem untwisted = system_;
+  system_.effects.push_back({"twist", Eigen::Vector2d(2e-5, 1)});
+  EXPECT_EQ(RollOut(system_, All(), Options())->positions(),
+            RollOut(untwisted, All(), Options())->positions());
+  recording_.held.col(1).setConstant(true);
+  EXPECT_NE(RollOut(system_, All(), Options())->positions(),
+            RollOut(untwisted, All(), Options())->positions());
+}
+
+TEST_F(ReleasedRod, HasTheRightGradient) {
+  system_.effects.pop_back();  // friction has kinks
+  system_.effects.push_back({"twist", Eigen::Vector2d(2e-5, 1)});
+  const SystemGradient gradient = GradientOfLoss();
+  for (std::size_t i = 0; i < system_.effects.size(); ++i) {
+    for (int j = 0; j < system_.effects[i].values.size(); ++j) {
+      ExpectDerivative(
+          gradient.effects[i][j], 1e-4 * system_.effects[i].values[j],
+          [i, j](SpringMassSystem& s) -> double& { return s.effects[i].values[j]; },
+          system_.effects[i].name);
+    }
+  }
+}
+
+TEST_F(ReleasedRod, IsTheSameInLanes) { ExpectTheSameInLanes(); }
+
 // The upper hand swings it, the lower one takes it in frame 9.
 class CaughtRope : public HeldRope {
  protected:

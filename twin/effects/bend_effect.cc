@@ -45,6 +45,12 @@ struct Bent {
         bend{q.t - p.t, q.Across(w) - p.Across(u), p.t} {}
 };
 
+// Nothing bends about a controller that holds nothing.
+bool IsReleased(const Instant& instant, const BendingTriple& triple) {
+  return instant.IsReleased(triple.a) || instant.IsReleased(triple.b) ||
+         instant.IsReleased(triple.c);
+}
+
 }  // namespace
 
 void AddBendForces(const std::vector<BendLaw>& laws, const Instant& instant,
@@ -52,6 +58,12 @@ void AddBendForces(const std::vector<BendLaw>& laws, const Instant& instant,
   const std::vector<BendingTriple>& triples = laws[0].moment->triples();
   for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
     const BendingTriple& triple = triples[i];
+    if (IsReleased(instant, triple)) {
+      for (const BendLaw& law : laws) {
+        if (law.moment->has_internal()) internal.segment<3>(law.internal + 3 * i).setZero();
+      }
+      continue;
+    }
     const Bent bent(instant, triple);
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
     for (const BendLaw& law : laws) {
@@ -77,6 +89,12 @@ void AddBendForcesAdjoint(const std::vector<BendLaw>& laws, const Instant& insta
   const std::vector<BendingTriple>& triples = laws[0].moment->triples();
   for (int i = 0; i < static_cast<int>(triples.size()); ++i) {
     const auto [a, b, c, length, rest] = triples[i];
+    if (IsReleased(instant, triples[i])) {
+      for (const BendLaw& law : laws) {
+        if (law.moment->has_internal()) internal_bar.segment<3>(law.internal + 3 * i).setZero();
+      }
+      continue;
+    }
     const Bent bent(instant, triples[i]);
     // forward: f_a -= G(p, M), f_b += G(p, M) + G(q, M), f_c -= G(q, M)
     const Vector on_p_bar = force_bar.col(b) - force_bar.col(a);

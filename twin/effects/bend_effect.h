@@ -5,7 +5,8 @@
 //   bend   kappa = t - s               of length 2 sin(angle / 2), rad for small angles
 //   force  -(d kappa / d x)^T M:   f_c = -G(q, M), f_a = -G(p, M), f_b = G(q, M) + G(p, M)
 // with G(e, M) = (M - t (t . M)) / |e|. A bend of any other rate of work than M . kappa_dot
-// would break the balance of forces; torques are balanced too, if M depends on kappa alone.
+// would break the balance of forces; torques are balanced too, if M depends on kappa alone. About a
+// controller that holds nothing there is no moment.
 #ifndef PHYSPRING_TWIN_EFFECTS_BEND_EFFECT_H_
 #define PHYSPRING_TWIN_EFFECTS_BEND_EFFECT_H_
 

@@ -13,10 +13,12 @@
 #ifndef PHYSPRING_TWIN_EFFECTS_EFFECT_H_
 #define PHYSPRING_TWIN_EFFECTS_EFFECT_H_
 
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "twin/controller_mask.h"
 #include "twin/effects/effect_mjcf.h"
 #include "twin/effects/effect_picture.h"
 #include "twin/effects/spring_tension.h"
@@ -75,6 +77,13 @@ struct Instant {
   double step;      // length of the sub-step, s
   const Points& x;  // 3 x (nodes + controllers), m
   const Points& v;  // m/s
+  const ControllerMask& released;
+
+  // Whether a column of x is a controller that holds nothing.
+  bool IsReleased(int column) const {
+    const int controller = column - static_cast<int>(x.cols() - std::ssize(released));
+    return !released.empty() && controller >= 0 && Has(released, controller);
+  }
 };
 
 // Where the adjoint of forces adds d loss / d what the forces depend on.

@@ -49,7 +49,7 @@ void EffectStep<Real>::ComputeNodeForces(const EffectSubstep<Real>& now, State* 
                                          EffectBuffers<Real>* buffers) const {
   Unpack(now.state, buffers);
   buffers->force.setZero(3, columns_);
-  effects_.AddForces({now.time, now.step, buffers->x, buffers->v}, &buffers->internal,
+  effects_.AddForces({now.time, now.step, buffers->x, buffers->v, now.released}, &buffers->internal,
                      &buffers->force);
   PackInternal(buffers->internal, next);
 }
@@ -83,9 +83,9 @@ void EffectStep<Real>::AddNodeForcesAdjoint(const EffectSubstep<Real>& now,
   UnpackInternal(*state_bar, &buffers->internal_bar);
   buffers->x_bar.setZero(3, columns_);
   buffers->v_bar.setZero(3, columns_);
-  effects_.AddForcesAdjoint({now.time, now.step, buffers->x, buffers->v}, buffers->internal,
-                            buffers->force, &buffers->internal_bar, &buffers->x_bar,
-                            &buffers->v_bar, buffers->gradient.data());
+  effects_.AddForcesAdjoint({now.time, now.step, buffers->x, buffers->v, now.released},
+                            buffers->internal, buffers->force, &buffers->internal_bar,
+                            &buffers->x_bar, &buffers->v_bar, buffers->gradient.data());
   for (int i = 0; i < columns_; ++i) {
     for (int j = 0; j < 3; ++j) {
       (*state_bar)[i].x[j] += static_cast<Real>(buffers->x_bar(j, i));

@@ -37,6 +37,7 @@ struct EffectSubstep {
   double step;  // its length, s
   const NodeStates<Real>& state;
   const Points& controller_velocity;  // 3 x controllers, m/s
+  const ControllerMask& released;     // hold nothing
 };
 
 // What sub-steps work in, and the sums of a frame's adjoint.

@@ -4,7 +4,9 @@
 // each other, over its length L. The angle, an internal variable that starts at 0, and the turn at
 // the start, of sections that a hand holds, give the torque T = GJ (turn + angle) / L. Nodes feel
 // the forces -T d angle / d x: torques on a straight rod are none, a bent one leaves its plane, and
-// a joint rolls.
+// a joint rolls. A section with a hand that holds nothing has no torque, and goes on from there.
+#include <algorithm>
+
 #include "twin/effects/bend_effect.h"
 #include "twin/effects/twist_section.h"
 
@@ -21,6 +23,10 @@ class TwistForce : public EffectForce {
   void Add(const Instant& instant, Eigen::Ref<Eigen::VectorXd> internal,
            Points* force) const override {
     for (int s = 0; s < internal_size(); ++s) {
+      if (IsReleased(s, instant)) {
+        internal[s] = -Turn(s);
+        continue;
+      }
       const Points slope = sections_[s].Slope(instant.x);
       internal[s] += instant.step * slope.cwiseProduct(instant.v).sum();
       *force -= Torque(s, internal[s]) * slope;
@@ -32,6 +38,11 @@ class TwistForce : public EffectForce {
                   InstantGradient* gradient) const override {
     for (int s = 0; s < internal_size(); ++s) {
       const TwistSection& section = sections_[s];
+      if (IsReleased(s, instant)) {
+        if (section.is_held()) gradient->values[1] -= internal_bar[s];
+        internal_bar[s] = 0;
+        continue;
+      }
       const Points slope = section.Slope(instant.x);
       const double angle = internal[s] + instant.step * slope.cwiseProduct(instant.v).sum();
       // forward: force = -torque slope
@@ -50,6 +61,12 @@ class TwistForce : public EffectForce {
   }
 
  private:
+  // Whether one of its hands holds nothing: the twist leaves through that end.
+  bool IsReleased(int section, const Instant& instant) const {
+    const std::vector<int>& columns = sections_[section].columns();
+    return std::any_of(columns.begin(), columns.end(),
+                       [&](int column) { return instant.IsReleased(column); });
+  }
   double Turn(int section) const { return sections_[section].is_held() ? values_[1] : 0; }
   double Torque(int section, double angle) const {
     return values_[0] * (Turn(section) + angle) / sections_[section].length();

@@ -159,12 +159,15 @@ std::vector<TwistWay> TwistWays(const Rod& rod, int nodes) {
 }  // namespace
 
 TwistSection::TwistSection(std::vector<BendingTriple> triples) : triples_(std::move(triples)) {
-  for (const BendingTriple& triple : triples_) length_ += triple.length;
+  for (const BendingTriple& triple : triples_) {
+    length_ += triple.length;
+    columns_.insert(columns_.end(), {triple.a, triple.b, triple.c});
+  }
 }
 
 TwistSection::TwistSection(const SpringMassSystem& system, const std::vector<int>& way,
                            std::optional<TwistJoint> first, std::optional<TwistJoint> last)
-    : first_(std::move(first)), last_(std::move(last)) {
+    : columns_(way), first_(std::move(first)), last_(std::move(last)) {
   const Points& x = system.position;
   const auto edge = [&](std::size_t i) { return (x.col(way[i + 1]) - x.col(way[i])).norm(); };
   for (std::size_t i = 0; i + 1 < way.size(); ++i) length_ += edge(i);

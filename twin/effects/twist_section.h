@@ -39,6 +39,8 @@ class TwistSection {
   double length() const { return length_; }  // m
   // Whether a hand holds one of its ends: how it is turned at the start is not known.
   bool is_held() const { return !first_ || !last_; }
+  // The nodes and controllers along it.
+  const std::vector<int>& columns() const { return columns_; }
 
   // d angle / d x, 1/m, of all nodes and controllers.
   Points Slope(const Points& x) const;
@@ -46,6 +48,7 @@ class TwistSection {
   void AddSlopeAdjoint(const Points& x, const Points& slope_bar, Points* x_bar) const;
 
  private:
+  std::vector<int> columns_;
   std::vector<BendingTriple> triples_;
   std::optional<TwistJoint> first_, last_;
   double length_ = 0;

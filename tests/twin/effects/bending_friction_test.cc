@@ -39,7 +39,7 @@ double MomentOf(int edges, double curvature) {
     const Points before = Arc(edges, curvature * i * h),
                  after = Arc(edges, curvature * (i + 1) * h);
     total = Points::Zero(3, edges + 1);
-    AddBendForces({{moment.get(), 0}}, {i * h, h, (before + after) / 2, (after - before) / h},
+    AddBendForces({{moment.get(), 0}}, {i * h, h, (before + after) / 2, (after - before) / h, {}},
                   internal, &total);
   }
   return total.col(0).norm() * kLength / edges;

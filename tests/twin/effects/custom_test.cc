@@ -68,7 +68,7 @@ Points ForceOf(const EffectValues& effect, const SpringMassSystem& system, doubl
   const auto force = GetEffect("custom").MakeForce(system, effect.values);
   Points sum = Points::Zero(3, x.cols());
   Eigen::VectorXd internal(0);
-  force->Add({time, 1e-3, x, v}, internal, &sum);
+  force->Add({time, 1e-3, x, v, {}}, internal, &sum);
   return sum;
 }
 

@@ -247,7 +247,7 @@ TEST(BendingEffects, KeepBranchesAtTheirAngles) {
     Points force = Points::Zero(3, 10);
     Eigen::VectorXd internal;
     const Points still = Points::Zero(3, 10);
-    AddBendForces({{law.get(), 0}}, {0, 1e-3, x, still}, internal, &force);
+    AddBendForces({{law.get(), 0}}, {0, 1e-3, x, still, {}}, internal, &force);
     return force;
   };
   EXPECT_LT(force_of(system.position).norm(), 1e-6);

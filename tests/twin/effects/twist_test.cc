@@ -46,7 +46,7 @@ TEST(Twist, AngleIsTheSolidAngleOfTheTangents) {
     const Points before = Rod(M_PI / 2 * i * h), after = Rod(M_PI / 2 * (i + 1) * h);
     const Points middle = (before + after) / 2, velocity = (after - before) / h;
     Points unused = Points::Zero(3, 5);
-    force->Add({i * h, h, middle, velocity}, angle, &unused);
+    force->Add({i * h, h, middle, velocity, {}}, angle, &unused);
   }
   EXPECT_NEAR(std::abs(angle[0]), M_PI / 2, 1e-3);
 }
@@ -58,10 +58,10 @@ TEST(Twist, ForcesAreBalanced) {
   Eigen::VectorXd angle = Eigen::VectorXd::Zero(1);
   const Points still = Points::Zero(3, 5);
   Points on_straight = still, on_bent = still;
-  force->Add({0, 1e-3, Rod(0), still}, angle, &on_straight);
+  force->Add({0, 1e-3, Rod(0), still, {}}, angle, &on_straight);
   EXPECT_LT(on_straight.cwiseAbs().maxCoeff(), 1e-15);
   const Points bent = Rod(0.7);
-  force->Add({0, 1e-3, bent, still}, angle, &on_bent);
+  force->Add({0, 1e-3, bent, still, {}}, angle, &on_bent);
   EXPECT_GT(on_bent.cwiseAbs().maxCoeff(), 1e-3);
   EXPECT_LT(on_bent.rowwise().sum().norm(), 1e-15);
   Vector torque = Vector::Zero();
