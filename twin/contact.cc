@@ -40,6 +40,7 @@ Contact<Real>::Contact(const SpringMassSystem& system, const Environment& enviro
       distance_(static_cast<Real>(system.contact.collision_distance)) {
   if (has_ground_) {
     ground_normal_ = environment.ground->head<3>().cast<Real>();
+    ground_tangents_ = Tangents<Real>(ground_normal_);
     ground_offset_ = static_cast<Real>((*environment.ground)[3]);
   }
   SetParameters(system);
@@ -222,11 +223,6 @@ typename Contact<Real>::Vector Contact<Real>::After(const Touch& touch) const {
 }
 
 template <class Real>
-typename Contact<Real>::Vector Contact<Real>::AfterGround(const Vector& v) const {
-  return After({0, -1, ground_normal_, Vector::Zero(), v});
-}
-
-template <class Real>
 void Contact<Real>::ApplyTouch(Touch touch, NodeStates<Real>* next, Impacts* impacts) const {
   NodeState<Real>* node = &(*next)[touch.node];
   touch.velocity_before = V(*node);
@@ -240,8 +236,8 @@ void Contact<Real>::ApplyGround(const NodeStates<Real>& state, Real h, NodeState
   if (!has_ground_) return;
   const Vector normal = ground_normal_;
   for (int i = 0; i < nodes_; ++i) {
-    const Real gap = normal.dot(X(state[i])) - ground_offset_;
-    if (!Hits(i, gap, normal.dot(V((*next)[i])), h)) continue;
+    const Real gap = OrderedDot<Real>(normal, X(state[i])) - ground_offset_;
+    if (!Hits(i, gap, OrderedDot<Real>(normal, V((*next)[i])), h)) continue;
     ApplyTouch({i, -1, normal}, next, impacts);
   }
 }

@@ -72,13 +72,14 @@ class Contact {
              double elapsed, double h, NodeStates<Real>* next, Impacts* impacts) const;
 
   // The parts of this, for rollouts whose ground is looked at side by side: the plane (offset:
-  // normal . x on it, m), how near it the nodes touch it, and the velocity v of one that touches it
-  // as it is thereafter.
+  // normal . x on it, m; tangents of the pyramidal cone), how near it the nodes touch it, and the
+  // law.
   bool has_ground() const { return has_ground_; }
   const Vector& ground_normal() const { return ground_normal_; }
   Real ground_offset() const { return ground_offset_; }
   const std::vector<Real>& radius() const { return radius_; }  // m
-  Vector AfterGround(const Vector& v) const;
+  const Tangents<Real>& ground_tangents() const { return ground_tangents_; }
+  const ContactPair<Real>& surface_law() const { return laws_.surface; }
 
   // Makes the velocities of `next` those before the contacts again.
   void Undo(const Impacts& impacts, NodeStates<Real>* next) const;
@@ -141,7 +142,8 @@ class Contact {
 
   int nodes_;
   bool has_ground_ = false;
-  Vector ground_normal_ = Vector::Zero();
+  Vector ground_normal_ = Vector::UnitZ();
+  Tangents<Real> ground_tangents_{ground_normal_};
   Real ground_offset_ = 0;
   Real distance_ = 0;  // below which particles collide, m
   ContactLaws<Real> laws_;

@@ -82,7 +82,7 @@ ContactPair<Real>& ContactPair<Real>::operator+=(const ContactPair<Other>& bar) 
 template <class Real>
 Eigen::Matrix<Real, 3, 1> Impact(const Eigen::Matrix<Real, 3, 1>& u,
                                  const Eigen::Matrix<Real, 3, 1>& n, const ContactPair<Real>& law) {
-  const Real normal = u.dot(n);
+  const Real normal = OrderedDot(u, n);
   const Eigen::Matrix<Real, 3, 1> tangential = u - normal * n;
   const Real limit = -law.friction * (1 + law.restitution) * normal;
   return -law.restitution * normal * n + Slide(law.cone, tangential, n, limit);
@@ -96,7 +96,7 @@ void ImpactAdjoint(const Eigen::Matrix<Real, 3, 1>& u, const Eigen::Matrix<Real,
                    Eigen::Matrix<Real, 3, 1>* u_bar, Eigen::Matrix<Real, 3, 1>* n_bar,
                    ContactPair<Real>* law_bar) {
   using Vector = Eigen::Matrix<Real, 3, 1>;
-  const Real normal = u.dot(n);
+  const Real normal = OrderedDot(u, n);
   const Vector tangential = u - normal * n;
   const Real limit = -law.friction * (1 + law.restitution) * normal;
 

@@ -25,11 +25,19 @@ enum class FrictionCone { kElliptic, kPyramidal };
 // Sliding slower than this has no direction, m/s.
 inline constexpr double kSliding = 1e-6;
 
+// a . b, in the order of additions that rollouts side by side have too (Eigen's depends on the
+// precision).
+template <class Real>
+Real OrderedDot(const Eigen::Matrix<Real, 3, 1>& a, const Eigen::Matrix<Real, 3, 1>& b) {
+  return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]);
+}
+
 // --- elliptic
 
 template <class Real>
 Eigen::Matrix<Real, 3, 1> SlideElliptic(const Eigen::Matrix<Real, 3, 1>& tangential, Real limit) {
-  const Real sliding = std::max(tangential.norm(), Real(kSliding));
+  const Real norm = std::sqrt(OrderedDot(tangential, tangential));
+  const Real sliding = std::max(norm, Real(kSliding));
   return std::max(Real(0), 1 - limit / sliding) * tangential;
 }
 
@@ -38,7 +46,7 @@ template <class Real>
 void SlideEllipticAdjoint(const Eigen::Matrix<Real, 3, 1>& tangential, Real limit,
                           const Eigen::Matrix<Real, 3, 1>& bar,
                           Eigen::Matrix<Real, 3, 1>* tangential_bar, Real* limit_bar) {
-  const Real norm = tangential.norm();
+  const Real norm = std::sqrt(OrderedDot(tangential, tangential));
   const Real sliding = std::max(norm, Real(kSliding));
   const Real kept = std::max(Real(0), 1 - limit / sliding);
   // forward: kept tangential
@@ -80,7 +88,7 @@ template <class Real>
 Eigen::Matrix<Real, 3, 1> SlidePyramidal(const Eigen::Matrix<Real, 3, 1>& tangential,
                                          const Eigen::Matrix<Real, 3, 1>& n, Real limit) {
   const Tangents<Real> t(n);
-  const Real u1 = tangential.dot(t.first), u2 = tangential.dot(t.second);
+  const Real u1 = OrderedDot(tangential, t.first), u2 = OrderedDot(tangential, t.second);
   const Real c = PyramidSpeed(std::abs(u1), std::abs(u2), limit);
   return std::clamp(u1, -c, c) * t.first + std::clamp(u2, -c, c) * t.second;
 }
@@ -93,7 +101,7 @@ void SlidePyramidalAdjoint(const Eigen::Matrix<Real, 3, 1>& tangential,
                            Eigen::Matrix<Real, 3, 1>* n_bar, Real* limit_bar) {
   using Vector = Eigen::Matrix<Real, 3, 1>;
   const Tangents<Real> t(n);
-  const Real u1 = tangential.dot(t.first), u2 = tangential.dot(t.second);
+  const Real u1 = OrderedDot(tangential, t.first), u2 = OrderedDot(tangential, t.second);
   const Real a = std::abs(u1), b = std::abs(u2);
   const Real c = PyramidSpeed(a, b, limit);
 

@@ -40,19 +40,18 @@ struct LaneNodes {
   const Real* kick;         // (3) h g, m/s
 };
 
-// The plane that nodes touch.
+// The plane that nodes touch, and the law of what it makes of their velocities (contact_law.h).
 template <class Real>
 struct LaneGround {
   Real normal[3];
-  Real offset;         // normal . x on the plane, m
-  const Real* radius;  // (nodes) distance from the plane at which a node touches it, m
-  Real approach;       // a node that is slower towards the plane does not touch it, m/s
-};
-
-// A node that touches the ground in some lanes: bit l of the mask is lane l.
-struct LaneTouch {
-  int node;
-  unsigned lanes;
+  Real tangents[2][3];      // of the pyramidal cone
+  Real offset;              // normal . x on the plane, m
+  const Real* radius;       // (nodes) distance from the plane at which a node touches it, m
+  Real approach;            // a node that is slower towards the plane does not touch it, m/s
+  Real sliding;             // slower than this, sliding has no direction, m/s
+  const Real* restitution;  // (1)
+  const Real* friction;     // (1)
+  const Real* pyramidal;    // (1) the cone: 1, or 0 if elliptic
 };
 
 template <class Real>
@@ -67,9 +66,9 @@ struct LaneKernel {
   void (*update_velocities)(const LaneNodes<Real>& nodes, const Real* state, const Real* force,
                             Real* next);
   void (*update_positions)(const LaneNodes<Real>& nodes, const Real* state, Real* next);
-  // Writes the nodes that touch the ground, at most all, and returns how many.
-  int (*find_touches)(const LaneNodes<Real>& nodes, const LaneGround<Real>& ground,
-                      const Real* state, const Real* next, LaneTouch* touches);
+  // The velocities of `next` <- those after the nodes of `state` hit the ground, where they do.
+  void (*hit_ground)(const LaneNodes<Real>& nodes, const LaneGround<Real>& ground,
+                     const Real* state, Real* next);
   // `count` numbers of each lane, each lane's in a row of its own, to side by side and back.
   void (*interleave)(const Real* const* rows, int count, Real* side_by_side);
   void (*separate)(const Real* side_by_side, int count, Real* const* rows);

@@ -135,26 +135,69 @@ struct LaneVectorKernel {
     }
   }
 
-  // normal . x, in the order of Contact
-  static V Along(const V (&normal)[3], const Real* x) {
-    return normal[0] * Load(x, 0) + (normal[1] * Load(x, 1) + normal[2] * Load(x, 2));
+  // Of vectors in space: OrderedDot of friction_cone.h. Of numbers: the greater and the lesser one,
+  // the absolute one, and one kept within `most` of 0.
+  static V Dot(const V (&a)[3], const V (&b)[3]) {
+    return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]);
+  }
+  static V Max(V a, V b) { return a < b ? b : a; }
+  static V Min(V a, V b) { return b < a ? b : a; }
+  static V Abs(V a) { return (a < V{} ? -a : a) + V{}; }  // + 0 makes 0 of -0
+  static V Clamp(V a, V most) { return a < -most ? -most : (most < a ? most : a); }
+
+  // SlideElliptic and SlidePyramidal of friction_cone.h.
+  static void SlideElliptic(V slowest, V limit, V (&u)[3]) {
+    const V sliding = Max(Lanes::Sqrt(Dot(u, u)), slowest);
+    const V kept = Max(V{}, Lanes::Set(1) - limit / sliding);
+    for (V& one : u) one = kept * one;
+  }
+  static void SlidePyramidal(const V (&first)[3], const V (&second)[3], V limit, V (&u)[3]) {
+    const V u1 = Dot(u, first), u2 = Dot(u, second);
+    const V a = Abs(u1), b = Abs(u2);
+    const V faster = Max(a, b), slower = Min(a, b);
+    const V both = Max(V{}, (a + b - limit) / Lanes::Set(2));
+    const V c = limit <= faster - slower ? faster - limit : both;
+    for (int j = 0; j < 3; ++j) u[j] = Clamp(u1, c) * first[j] + Clamp(u2, c) * second[j];
   }
 
-  static int FindTouches(const LaneNodes<Real>& nodes, const LaneGround<Real>& ground,
-                         const Real* state, const Real* next, LaneTouch* touches) {
-    const V normal[3] = {Lanes::Set(ground.normal[0]), Lanes::Set(ground.normal[1]),
-                         Lanes::Set(ground.normal[2])};
+  static void SetAll(const Real (&numbers)[3], V (&all)[3]) {
+    for (int j = 0; j < 3; ++j) all[j] = Lanes::Set(numbers[j]);
+  }
+
+  static void HitGround(const LaneNodes<Real>& nodes, const LaneGround<Real>& ground,
+                        const Real* state, Real* next) {
+    constexpr unsigned kAll = (1U << kLanes) - 1;
+    V normal[3], first[3], second[3];
+    SetAll(ground.normal, normal);
+    SetAll(ground.tangents[0], first);
+    SetAll(ground.tangents[1], second);
     const V offset = Lanes::Set(ground.offset), h = Lanes::Set(nodes.h);
-    const V slowest = Lanes::Set(-ground.approach);
-    int count = 0;
+    const V slowest = Lanes::Set(-ground.approach), sliding = Lanes::Set(ground.sliding);
+    const V restitution = Load(ground.restitution, 0), friction = Load(ground.friction, 0);
+    const V pyramidal = Load(ground.pyramidal, 0);
+    const unsigned pyramids = Lanes::Less(V{}, pyramidal);
     for (int i = 0; i < nodes.nodes; ++i) {
-      const V gap = Along(normal, state + kLanes * kLaneState * i) - offset;
-      const V approach = Along(normal, next + kLanes * (kLaneState * i + kLaneVelocity));
-      const V after = gap - Load(ground.radius, i) + h * approach;
-      const unsigned lanes = Lanes::Less(after, V{}) & Lanes::Less(approach, slowest);
-      if (lanes != 0) touches[count++] = {i, lanes};
+      const Real* x = state + kLanes * kLaneState * i;
+      Real* next_v = next + kLanes * (kLaneState * i + kLaneVelocity);
+      const V place[3] = {Load(x, 0), Load(x, 1), Load(x, 2)};
+      const V v[3] = {Load(next_v, 0), Load(next_v, 1), Load(next_v, 2)};
+      const V approach = Dot(normal, v);
+      const V after = Dot(normal, place) - offset - Load(ground.radius, i) + h * approach;
+      if ((Lanes::Less(after, V{}) & Lanes::Less(approach, slowest)) == 0) continue;
+      // Impact of contact_law.h
+      V slides[3];
+      for (int j = 0; j < 3; ++j) slides[j] = v[j] - approach * normal[j];
+      const V limit = -friction * (Lanes::Set(1) + restitution) * approach;
+      V on_pyramid[3] = {slides[0], slides[1], slides[2]};
+      if (pyramids != kAll) SlideElliptic(sliding, limit, slides);
+      if (pyramids != 0) SlidePyramidal(first, second, limit, on_pyramid);
+      for (int j = 0; j < 3; ++j) {
+        const V slid = V{} < pyramidal ? on_pyramid[j] : slides[j];
+        const V hit =
+            V{} + (-restitution * approach * normal[j] + slid);  // the ground stands still
+        Store((after < V{}) & (approach < slowest) ? hit : v[j], next_v, j);
+      }
     }
-    return count;
   }
 
   // In squares of numbers, and what is left over one by one.
@@ -191,7 +234,7 @@ struct LaneVectorKernel {
 
   static constexpr LaneKernel<Real> kKernel = {
       Lanes::kName,     kLanes,          Lanes::kTime, MeasureSprings, AddSpringForces,
-      UpdateVelocities, UpdatePositions, FindTouches,  Interleave,     Separate};
+      UpdateVelocities, UpdatePositions, HitGround,    Interleave,     Separate};
 };
 
 }  // namespace physpring

@@ -21,13 +21,15 @@ LaneStep<Real>::LaneStep(const std::vector<const LevelStep<Real>*>& levels,
       kick_(3, kernel.lanes),
       parameters_(kLaneSpring * springs_, kernel.lanes),
       radius_(nodes_, kernel.lanes),
+      restitution_(1, kernel.lanes),
+      friction_(1, kernel.lanes),
+      pyramidal_(1, kernel.lanes),
       force_(kLaneForce * level().first_internal(), kernel.lanes),
       length_(springs_, kernel.lanes),
       rate_(springs_, kernel.lanes),
       tension_(springs_, kernel.lanes),
       effects_(levels.size()),
       impacts_(levels.size()),
-      touches_(nodes_),
       own_(kernel.lanes, nullptr),
       rows_(kernel.lanes, nullptr),
       spare_(std::max(kLaneState * level().first_internal(), springs_)) {
@@ -52,6 +54,10 @@ void LaneStep<Real>::SetParameters(const std::vector<NodeView<Real>>& nodes) {
       h_over_mass_.data()[lanes * i + lane] = nodes[n].h_over_mass[i];
       radius_.data()[lanes * i + lane] = levels_[n]->contact().radius()[i];
     }
+    const ContactPair<Real>& law = levels_[n]->contact().surface_law();
+    restitution_.data()[lane] = law.restitution;
+    friction_.data()[lane] = law.friction;
+    pyramidal_.data()[lane] = law.cone == FrictionCone::kPyramidal;
     decay_.data()[lane] = nodes[n].decay;
     for (int j = 0; j < 3; ++j) kick_.data()[lanes * j + lane] = nodes[n].kick.f[j];
   }
@@ -144,7 +150,7 @@ void LaneStep<Real>::ApplyContacts(const Lanes& lanes, const Real* state, Real* 
   if (!only_ground) {
     ApplyAllContacts(lanes, state, next);
   } else if (level().contact().has_ground()) {
-    ApplyGround(lanes, state, next);
+    HitGround(state, next);
   }
 }
 
@@ -160,24 +166,21 @@ void LaneStep<Real>::ApplyAllContacts(const Lanes& lanes, const Real* state, Rea
 }
 
 template <class Real>
-void LaneStep<Real>::ApplyGround(const Lanes& lanes, const Real* state, Real* next) {
+void LaneStep<Real>::HitGround(const Real* state, Real* next) const {
   const Contact<Real>& contact = level().contact();
-  const auto& normal = contact.ground_normal();
-  const LaneGround<Real> ground{{normal[0], normal[1], normal[2]},
-                                contact.ground_offset(),
-                                radius_.data(),
-                                static_cast<Real>(kApproach)};
-  const int count = kernel_.find_touches(Nodes(), ground, state, next, touches_.data());
-  for (int t = 0; t < count; ++t) {
-    const LaneTouch& touch = touches_[t];
-    for (const LaneNow<Real>& one : lanes) {
-      if ((touch.lanes >> one.lane & 1U) == 0) continue;
-      Real* v = next + kernel_.lanes * (kLaneState * touch.node + kLaneVelocity) + one.lane;
-      const auto after =
-          levels_[one.lane]->contact().AfterGround({v[0], v[kernel_.lanes], v[2 * kernel_.lanes]});
-      for (int j = 0; j < 3; ++j) v[kernel_.lanes * j] = after[j];
-    }
-  }
+  const auto& n = contact.ground_normal();
+  const auto &first = contact.ground_tangents().first, &second = contact.ground_tangents().second;
+  kernel_.hit_ground(Nodes(),
+                     {{n[0], n[1], n[2]},
+                      {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}},
+                      contact.ground_offset(),
+                      radius_.data(),
+                      static_cast<Real>(kApproach),
+                      static_cast<Real>(kSliding),
+                      restitution_.data(),
+                      friction_.data(),
+                      pyramidal_.data()},
+                     state, next);
 }
 
 template class LaneStep<float>;

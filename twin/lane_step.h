@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One sub-step of several levels side by side, one in each lane: LevelStep::Advance, with the same
-// bits. Springs, drag and the search for nodes that touch the ground go through all lanes at once.
-// Laws of effects, and contacts where there are any, take one lane after the other.
+// bits. Springs, drag and the ground go through all lanes at once. Laws of effects, and contacts
+// with anything else, take one lane after the other.
 #ifndef PHYSPRING_TWIN_LANE_STEP_H_
 #define PHYSPRING_TWIN_LANE_STEP_H_
 
@@ -70,7 +70,7 @@ class LaneStep {
   void AddNodeForces(const Lanes& lanes);
   void ApplyContacts(const Lanes& lanes, const Real* state, Real* next);
   void ApplyAllContacts(const Lanes& lanes, const Real* state, Real* next);
-  void ApplyGround(const Lanes& lanes, const Real* state, Real* next);
+  void HitGround(const Real* state, Real* next) const;
 
   const LevelStep<Real>& level() const { return *levels_[0]; }
   LaneNodes<Real> Nodes() const {
@@ -83,14 +83,14 @@ class LaneStep {
   Real h_;
   bool needs_nodes_;  // the effects: where they are in the lanes' own states
   LaneArray<Real> h_over_mass_, decay_, kick_, parameters_, radius_;
+  LaneArray<Real> restitution_, friction_, pyramidal_;
   // what a sub-step works in
   LaneArray<Real> force_, length_, rate_, tension_;
   std::vector<EffectBuffers<Real>> effects_;                // (lanes)
   std::vector<typename LevelStep<Real>::Impacts> impacts_;  // (lanes)
-  std::vector<LaneTouch> touches_;
-  std::vector<State*> own_;  // (lanes)
-  std::vector<Real*> rows_;  // (lanes)
-  std::vector<Real> spare_;  // the row of a lane without one
+  std::vector<State*> own_;                                 // (lanes)
+  std::vector<Real*> rows_;                                 // (lanes)
+  std::vector<Real> spare_;                                 // the row of a lane without one
 };
 
 }  // namespace physpring

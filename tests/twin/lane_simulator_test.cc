@@ -62,6 +62,21 @@ TEST_F(LaneSimulatorTest, GivesTheBitsOfEachAloneOnAnInclinedGround) {
   EXPECT_NE(Simulate<double>(free).back(), Simulate<double>(all[0]).back());
 }
 
+TEST_F(LaneSimulatorTest, GivesTheBitsOfEachAloneWithEitherCone) {
+  TargetedRollout rollout = RandomRollout(4, 2);
+  rollout.environment.ground = Eigen::Vector4d(0.6, 0, 0.8, -0.06);
+  rollout.velocity.row(2).array() -= 1;
+  rollout.system.contact.surface.restitution = 0.4;
+  std::vector<TargetedRollout> all = Several(rollout, 11);
+  for (TargetedRollout& one : all) one.system.contact.surface.cone = FrictionCone::kPyramidal;
+  EXPECT_EQ(DifferenceSideBySide(all), "");
+  TargetedRollout elliptic = all[4];
+  elliptic.system.contact.surface.cone = FrictionCone::kElliptic;
+  EXPECT_NE(Simulate<double>(elliptic).back(), Simulate<double>(all[4]).back());
+  all[4] = elliptic;
+  EXPECT_EQ(DifferenceSideBySide(all), "");
+}
+
 TEST_F(LaneSimulatorTest, GivesTheBitsOfEachAloneWhereParticlesCollide) {
   TargetedRollout rollout = RandomRollout(3, 1);
   rollout.position *= 0.6;
