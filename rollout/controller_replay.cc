@@ -37,7 +37,8 @@ int FindLevel(const ExportedObject& object, const Recording& recording, const Tw
   if (twin == nullptr) {
     if (object.node_count() == recording.particle_count()) return 0;
     throw Error(fmt::format(
-        "{}: has {} nodes, but recording {} has {} particles; a level above 0 needs its twin",
+        "{}: has {} nodes, but recording {} has {} particles: is it of this object? If it is, a "
+        "level above 0 needs its twin",
         scene, object.node_count(), recording.name, recording.particle_count()));
   }
   ExpectSameObject(*twin, recording);

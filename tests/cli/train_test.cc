@@ -181,6 +181,23 @@ TEST_F(Train, WarnsOfAControllerThatNoSpringJoins) {
   EXPECT_EQ(ReadTwin(twin_).levels[0].system.UnjoinedControllers(), std::vector<int>{1});
 }
 
+TEST_F(Train, WarnsOfAnotherRestShape) {
+  Recording rope = MovingRope(8, 10);
+  rope.rest = rope.start;
+  rope.rest.row(0).array() += 1;  // the same shape elsewhere
+  rope.rest_given = true;
+  WriteRecording(rope, other_);
+  EXPECT_EQ(RunProgram(Short("two-stage")).errors.find("rest shape"), std::string::npos);
+  rope.rest *= 1.1;
+  WriteRecording(rope, other_);
+  const ProgramResult result = RunProgram(Short("two-stage") + Words{"--force"});
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_NE(result.errors.find("warning: recording other: its rest shape is not that of rope, by "
+                               "which training goes (frame 0)\n"),
+            std::string::npos)
+      << result.errors;
+}
+
 TEST_F(Train, WarnsOfAnotherRod) {
   EXPECT_EQ(RunProgram(Short("two-stage")).errors.find("training goes by"), std::string::npos);
   Recording rope = MovingRope(8, 10);

@@ -146,7 +146,7 @@ TEST(ControllerReplayErrors, SayWhatDoesNotFit) {
   const ExportedFolder folder(twin, {});
   Recording recording = RecordingOfMotion(twin, 3);
   EXPECT_THAT(Message(folder.File("scene_level1.xml"), recording, nullptr),
-              HasSubstr("a level above 0 needs its twin"));
+              HasSubstr("is it of this object? If it is, a level above 0 needs its twin"));
   const Twin other = SmallTwin(1);
   EXPECT_THAT(Message(folder.File("scene_level1.xml"), recording, &other),
               HasSubstr("as no level of twin"));

@@ -63,6 +63,27 @@ void WarnOfRod(const Recording& first, Recording* recording) {
                   first.rod.empty() ? "has none" : "has one"));
 }
 
+// Distances that say whether two shapes are the same one, wherever they are.
+Eigen::VectorXd DistancesWithin(const Points& shape) {
+  const Eigen::Index n = shape.cols();
+  Eigen::VectorXd distances(2 * n - 1);
+  distances << (shape.colwise() - shape.rowwise().mean()).colwise().norm().transpose(),
+      (shape.rightCols(n - 1) - shape.leftCols(n - 1)).colwise().norm().transpose();
+  return distances;
+}
+
+void WarnOfRest(const Recording& first, Recording* recording) {
+  if (!recording->rest_given || recording->particle_count() == 0) return;
+  constexpr double kAlike = 1e-5;  // of the largest distance
+  const Eigen::VectorXd own =
+      DistancesWithin(recording->rest.leftCols(recording->particle_count()));
+  const Eigen::VectorXd of_first = DistancesWithin(first.rest.leftCols(first.particle_count()));
+  if ((own - of_first).cwiseAbs().maxCoeff() <= kAlike * of_first.maxCoeff()) return;
+  recording->warnings.push_back(
+      fmt::format("recording {}: its rest shape is not that of {}, by which training goes{}",
+                  recording->name, first.name, first.rest_given ? "" : " (frame 0)"));
+}
+
 // Whether a particle is seen after frame 0, in the frames for fitting.
 bool SeesMotion(const Recording& recording) {
   for (int t = 1; t < recording.train_frames; ++t) {
@@ -94,6 +115,7 @@ void Add(const std::vector<RecordingEntry>& entries, Recording recording, FitDat
   ExpectNew(recordings, entries);
   WarnOfMass(recordings[0], &recordings.back());
   WarnOfRod(recordings[0], &recordings.back());
+  WarnOfRest(recordings[0], &recordings.back());
   WarnOfOddNumbering(recordings[0], entry.path, &recordings.back());
   WarnOfMovedGrasps(recordings[0], &recordings.back());
   const int own = -static_cast<int>(recordings.size());
