@@ -78,7 +78,7 @@ TEST(Candidates, OfARodCalmItsShortestWave) {
   for (Eigen::Index i = 0; i < v.cols(); ++i) v(0, i) = i % 2 == 0 ? 0.3 : -0.3;
   Points force = Points::Zero(3, v.cols());
   Eigen::VectorXd internal(0);
-  effects.AddForces({0, 1e-4, system.position, v}, &internal, &force);
+  effects.AddForces({0, 1e-4, system.position, v, {}}, &internal, &force);
   const int middle = 15;
   EXPECT_NEAR(force(0, middle) / (system.mass[middle] * v(0, middle)), -100, 1e-6);
 }
