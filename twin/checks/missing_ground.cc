@@ -11,7 +11,7 @@ namespace physpring {
 namespace {
 
 constexpr double kFlat = 0.2;       // its height, of its size
-constexpr double kLifted = 0.1;     // the highest point's rise, of its size
+constexpr double kLifted = 0.1;     // what its height grows by, of its size
 constexpr double kNoLower = 0.05;   // of its size
 constexpr double kOutliers = 0.02;  // of the points of a frame
 
@@ -35,14 +35,14 @@ std::string MissingGround(const Recording& recording, const MotionScale& scale) 
   if (highest - lowest > kFlat * scale.size) return "";
 
   const double no_lower = std::max(kNoLower * scale.size, 4 * scale.noise);
-  double risen = 0;
+  double upright = 0;  // its height, at most
   for (const Points& frame : recording.points) {
     const std::vector<double> heights = Heights(frame, up);
     if (heights.empty()) continue;
     if (Quantile(kOutliers, heights) < lowest - no_lower) return "";
-    risen = std::max(risen, Quantile(1 - kOutliers, heights) - highest);
+    upright = std::max(upright, Quantile(1 - kOutliers, heights) - Quantile(kOutliers, heights));
   }
-  if (risen < kLifted * scale.size) return "";
+  if (upright < highest - lowest + kLifted * scale.size) return "";
   return fmt::format(
       "the object lies flat at a height of {:.3g} m at the start and is never lower, but there is "
       "no ground: if it lies on something, 'ground' must say where",

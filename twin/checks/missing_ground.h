@@ -10,9 +10,9 @@
 
 namespace physpring {
 
-// A line for an object without a ground that is flat at the start, is lifted, and is never lower
-// than it started: it lay on something. What hangs, or is clamped and swings, gets lower. Empty
-// otherwise.
+// A line for an object without a ground that is flat at the start, is lifted on one side, and is
+// never lower than it started: it lay on something. What hangs, or is clamped and swings, gets
+// lower. Empty otherwise.
 std::string MissingGround(const Recording& recording, const MotionScale& scale);
 
 }  // namespace physpring
