@@ -48,6 +48,14 @@ class Train : public testing::Test {
                                              : Words{"--epochs", "30"});
   }
 
+  // Short, with another second recording, over what is there.
+  ProgramResult TrainWithOther(const Recording& recording) const {
+    WriteRecording(recording, other_);
+    ProgramResult result = RunProgram(Short("two-stage") + Words{"--force"});
+    EXPECT_EQ(result.status, 0) << result.errors;
+    return result;
+  }
+
   // The twin file of Short, trained without a break.
   std::string Uninterrupted(const std::string& method) const {
     const ProgramResult result = RunProgram(Short(method) + Words{"--threads", "1"});

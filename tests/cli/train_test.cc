@@ -186,12 +186,9 @@ TEST_F(Train, WarnsOfAnotherRestShape) {
   rope.rest = rope.start;
   rope.rest.row(0).array() += 1;  // the same shape elsewhere
   rope.rest_given = true;
-  WriteRecording(rope, other_);
-  EXPECT_EQ(RunProgram(Short("two-stage")).errors.find("rest shape"), std::string::npos);
+  EXPECT_EQ(TrainWithOther(rope).errors.find("rest shape"), std::string::npos);
   rope.rest *= 1.1;
-  WriteRecording(rope, other_);
-  const ProgramResult result = RunProgram(Short("two-stage") + Words{"--force"});
-  EXPECT_EQ(result.status, 0) << result.errors;
+  const ProgramResult result = TrainWithOther(rope);
   EXPECT_NE(result.errors.find("warning: recording other: its rest shape is not that of rope, by "
                                "which training goes (frame 0)\n"),
             std::string::npos)
@@ -202,9 +199,7 @@ TEST_F(Train, WarnsOfAnotherRod) {
   EXPECT_EQ(RunProgram(Short("two-stage")).errors.find("training goes by"), std::string::npos);
   Recording rope = MovingRope(8, 10);
   rope.rod = PlainRod(Eigen::VectorXd::LinSpaced(rope.rest.cols(), 0, 0.3));
-  WriteRecording(rope, other_);
-  const ProgramResult result = RunProgram(Short("two-stage") + Words{"--force"});
-  EXPECT_EQ(result.status, 0) << result.errors;
+  const ProgramResult result = TrainWithOther(rope);
   EXPECT_NE(result.errors.find("warning: recording other: has another rod; training goes by rope, "
                                "which has none"),
             std::string::npos)
