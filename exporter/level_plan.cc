@@ -72,7 +72,8 @@ ContactKind ChooseContact(SpringKind springs, ContactKind asked) {
 }
 
 void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
-  const TwinLevel& level = plan->twin->levels[plan->level];
+  TwinLevel level = plan->twin->levels[plan->level];
+  if (plan->springs != SpringKind::kPlugin) level.system.dashpot_stages = 1;  // MuJoCo's own
   plan->critical_timestep = ComputeStabilityBound(level.system).timestep;
   plan->substep = 1 / (plan->twin->fps * ChooseSubsteps(level, plan->twin->fps, 0));
   plan->largest_timestep = std::numeric_limits<double>::infinity();

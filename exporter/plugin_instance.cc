@@ -62,6 +62,9 @@ void AddSpringKeys(const LevelPlan& plan, XmlElement* instance) {
   AddLists(system, NumberRole::kSprings, instance);
   AddScalars(system, NumberRole::kSprings, instance);
   AddConfig(instance, kAttrSubstep, Number(plan.substep));
+  if (system.dashpot_stages > 1) {
+    AddConfig(instance, kAttrDashpotStages, std::to_string(system.dashpot_stages));
+  }
   if (!plan.plugin_effects.empty()) {
     AddConfig(instance, kAttrEffects, EffectsToJson(plan.plugin_effects));
   }

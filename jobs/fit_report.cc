@@ -12,6 +12,7 @@
 #include "trainer/motion/residual_correlation.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/plausibility.h"
+#include "twin/dashpot_stages.h"
 #include "twin/parallel.h"
 #include "twin/stability.h"
 
@@ -78,7 +79,8 @@ std::string WhatIsLeft(const Twin& twin, const FitData& data, const TrainOptions
 std::string AtTheStiffest(const Twin& twin, const FitData& data, const TrainOptions& options) {
   constexpr double kNear = 1.01;  // a fit stays a little below
   const double rate = MostRate(options, data.recordings[0]);
-  const double stable = ComputeStabilityBound(twin.levels[0].system).timestep;
+  const double stable =
+      ComputeStabilityBound(twin.levels[0].system).CheapestTimestep(kMostDashpotStages);
   if (options.method == TrainOptions::Method::kTwoStage || stable > kNear / (rate * kStepSafety)) {
     return "";
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "twin/attribute_names.h"
+#include "twin/dashpot_stages.h"
 #include "twin/error.h"
 #include "twin/stability.h"
 
@@ -18,9 +19,19 @@ constexpr double kSafety = 0.5;
 
 using Vector = Eigen::Vector3d;
 
+int ReadDashpotStages(const Attributes& attributes) {
+  const double stages = attributes.Number(kAttrDashpotStages, 1);
+  if (stages >= 1 && stages <= kMostDashpotStages && stages == std::floor(stages)) {
+    return static_cast<int>(stages);
+  }
+  throw Error(fmt::format("{}: attribute '{}' is {}, expected a whole number from 1 to {}",
+                          attributes.where(), kAttrDashpotStages, stages, kMostDashpotStages));
+}
+
 Level ReadLevelWithSprings(const mjModel* model, int instance, const Attributes& attributes) {
   Level level = ReadLevel(model, instance, attributes);
   ReadSprings(attributes, &level);
+  level.system.dashpot_stages = ReadDashpotStages(attributes);
   return level;
 }
 
@@ -76,7 +87,7 @@ SpringsModel::SpringsModel(const mjModel* model, int instance)
 const std::vector<const char*>& Springs::AttributeNames() {
   static const std::vector<const char*> names = WithLevelNumbers(
       {kAttrNodes, kAttrControllers, kAttrSprings, kAttrOrder, kAttrRod, kAttrEffects, kAttrSubstep,
-       kAttrControllerVelocity, kAttrReleased, kAttrCone},
+       kAttrDashpotStages, kAttrControllerVelocity, kAttrReleased, kAttrCone},
       {NumberRole::kSprings, NumberRole::kSurface, NumberRole::kObject, NumberRole::kReach});
   return names;
 }

@@ -79,10 +79,13 @@ std::string DescribeLevel(const TwinLevel& level, std::size_t number) {
   const double stable = ComputeStabilityBound(system).timestep;
   std::string text = fmt::format(
       "\nlevel {}: {} nodes, {} springs, {:g} kg\n"
-      "  sub-step of training {:.3g} s, stable below {:.3g} s\n"
+      "  sub-step of training {:.3g} s, stable below {:.3g} s{}\n"
       "  {:<14} {:>10} {:>10} {:>10}\n",
       number, system.node_count(), system.spring_count(), system.mass.sum(),
-      1.0 / level.substeps_per_second, stable, "", "least", "median", "most");
+      1.0 / level.substeps_per_second, stable,
+      system.dashpot_stages > 1 ? fmt::format("; dashpots in {} stages", system.dashpot_stages)
+                                : "",
+      "", "least", "median", "most");
   for (const LevelList& list : kLevelLists) {
     const Range range = RangeOf(list.In(system));
     text += fmt::format("  {:<14} {:>10.4g} {:>10.4g} {:>10.4g} {}\n", WordsOf(list.name),
@@ -110,6 +113,7 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
                {"springs", system.spring_count()},
                {"total_mass_kg", system.mass.sum()},
                {"substeps_per_second", level.substeps_per_second},
+               {"dashpot_stages", system.dashpot_stages},
                {"stable_timestep_s", std::isfinite(stable) ? Json(stable) : Json(nullptr)}};
   for (const LevelList& list : kLevelLists) {
     const Range range = RangeOf(list.In(system));

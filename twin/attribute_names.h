@@ -13,6 +13,7 @@ inline constexpr const char* kAttrOrder = "order";
 inline constexpr const char* kAttrRod = "rod";
 inline constexpr const char* kAttrEffects = "effects";
 inline constexpr const char* kAttrSubstep = "substep";
+inline constexpr const char* kAttrDashpotStages = "dashpot_stages";
 inline constexpr const char* kAttrControllerVelocity = "controller_velocity";
 inline constexpr const char* kAttrReleased = "released";
 inline constexpr const char* kAttrCone = "cone";

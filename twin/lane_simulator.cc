@@ -11,7 +11,8 @@ namespace physpring {
 
 bool AreAlike(const SpringMassSystem& a, const SpringMassSystem& b) {
   return a.position.cols() == b.position.cols() && a.controllers == b.controllers &&
-         a.springs == b.springs && a.contact.collision_distance == b.contact.collision_distance &&
+         a.springs == b.springs && a.dashpot_stages == b.dashpot_stages &&
+         a.contact.collision_distance == b.contact.collision_distance &&
          (a.contact.collision_distance == 0 || a.position == b.position) &&
          std::equal(a.effects.begin(), a.effects.end(), b.effects.begin(), b.effects.end(),
                     [](const EffectValues& p, const EffectValues& q) {

@@ -68,11 +68,15 @@ class LaneStep {
                      NodeStates<Real>* LaneNow<Real>::*of);
   const Real* AddTensions(const Lanes& lanes, const Real* state);
   void AddNodeForces(const Lanes& lanes);
+  // DashpotStages::Apply of all lanes.
+  void ApplyDashpotStages(const Real* state);
   void ApplyContacts(const Lanes& lanes, const Real* state, Real* next);
   void ApplyAllContacts(const Lanes& lanes, const Real* state, Real* next);
   void HitGround(const Real* state, Real* next) const;
 
   const LevelStep<Real>& level() const { return *levels_[0]; }
+  bool HasStages() const { return level().dashpot_stages().count() > 1; }
+  int Staged(int numbers) const { return HasStages() ? numbers : 0; }
   LaneNodes<Real> Nodes() const {
     return {nodes_, h_, h_over_mass_.data(), decay_.data(), kick_.data()};
   }
@@ -86,6 +90,8 @@ class LaneStep {
   LaneArray<Real> restitution_, friction_, pyramidal_;
   // what a sub-step works in
   LaneArray<Real> force_, length_, rate_, tension_;
+  // of dashpots in stages: their parameters with stiffness 0, x and R_j, G_j, E_j-1, E_j
+  LaneArray<Real> dashpots_, stage_, stage_force_, before_, effect_;
   std::vector<EffectBuffers<Real>> effects_;                // (lanes)
   std::vector<typename LevelStep<Real>::Impacts> impacts_;  // (lanes)
   std::vector<State*> own_;                                 // (lanes)

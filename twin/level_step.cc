@@ -21,6 +21,7 @@ LevelStep<Real>::LevelStep(const SpringMassSystem& system, const Environment& en
                            const Kernel<Real>& kernel)
     : kernel_(&kernel),
       springs_(system),
+      dashpot_stages_(system.dashpot_stages),
       contact_(system, environment),
       gravity_(environment.gravity) {
   SetParameters(system);
@@ -31,6 +32,15 @@ void LevelStep<Real>::SetParameters(const SpringMassSystem& system) {
   effects_ = std::make_shared<const EffectStep<Real>>(system, gravity_, springs_.View());
   springs_.SetParameters(effects_->changed().system);
   contact_.SetParameters(effects_->changed().system);
+}
+
+template <class Real>
+void LevelStep<Real>::AddForces(const LevelSubstep<Real>& now, const State& state, State* next,
+                                LevelBuffers<Real>* buffers) const {
+  std::fill(buffers->force.begin(), buffers->force.end(), NodeForce<Real>{});
+  effects_->AddForces(EffectsOf(now, state), next, &buffers->force, &buffers->effects);
+  dashpot_stages_.Apply(*kernel_, springs_.Dashpots(), now.nodes, state, &buffers->force,
+                        &buffers->dashpots);
 }
 
 template <class Real>
@@ -51,11 +61,26 @@ void LevelStep<Real>::AdvanceAdjoint(const LevelSubstep<Real>& now, const State&
   kernel_->update_positions_adjoint(now.nodes, state_bar->data());
   contact_.ApplyAdjoint(state, impacts, state_bar, &buffers->contact_gradient);
   contact_.Undo(*impacts, next);
-  kernel_->update_velocities_adjoint(
-      now.nodes, state.data(), next->data(), state_bar->data(), buffers->force.data(),
-      {buffers->mass_gradient.data(), &buffers->drag_gradient, &buffers->gravity_gradient});
+  const NodeGradientView<Real> gradient{buffers->mass_gradient.data(), &buffers->drag_gradient,
+                                        &buffers->gravity_gradient};
+  if (dashpot_stages_.count() > 1) RepeatForces(now, state, buffers);
+  kernel_->update_velocities_adjoint(now.nodes, state.data(), next->data(), state_bar->data(),
+                                     buffers->force.data(), gradient);
+  dashpot_stages_.ApplyAdjoint(*kernel_, springs_.Dashpots(), now.nodes, &buffers->force, state_bar,
+                               buffers->spring_gradient.dashpot.data(), gradient,
+                               &buffers->dashpots);
   effects_->AddForcesAdjoint(EffectsOf(now, state), buffers->force, state_bar,
                              buffers->spring_gradient.View(), &buffers->effects);
+}
+
+// What dashpots in stages keep for their adjoint.
+template <class Real>
+void LevelStep<Real>::RepeatForces(const LevelSubstep<Real>& now, const State& state,
+                                   LevelBuffers<Real>* buffers) const {
+  buffers->dashpots.next.resize(state.size());
+  AddForces(now, state, &buffers->dashpots.next, buffers);
+  // controllers and the spare node feel no force: their entries stay 0
+  std::fill(buffers->force.begin(), buffers->force.end(), NodeForce<Real>{});
 }
 
 template <class Real>

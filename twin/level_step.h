@@ -2,6 +2,7 @@
 // One sub-step of a level and its adjoint. The trainer's simulator and the MuJoCo plugin both take
 // it, so that they agree by construction. It is semi-implicit Euler:
 //   F   springs, dashpots and effects at (x, v)          effects/effect_step.h
+//   F <- its mean, where dashpots take several stages    dashpot_stages.h
 //   v*  = (v + h (F / m + g)) exp(-h drag)               node_update.h
 //   v'  = contacts(v*), then the owner's own contacts    contact.h
 //   x'  = x + h v'                                       node_update.h
@@ -15,6 +16,7 @@
 
 #include "twin/contact.h"
 #include "twin/controller_mask.h"
+#include "twin/dashpot_stages.h"
 #include "twin/effects/effect_step.h"
 #include "twin/kernel_choice.h"
 #include "twin/node_state.h"
@@ -60,6 +62,7 @@ struct LevelBuffers {
 
   NodeForces<Real> force;
   EffectBuffers<Real> effects;
+  DashpotBuffers<Real> dashpots;
   SpringBlockGradient<Real> spring_gradient;
   NodeForces<Real> mass_gradient;  // this, drag and gravity: see node_update.h
   NodeForce<Real> drag_gradient, gravity_gradient;
@@ -90,6 +93,7 @@ class LevelStep {
   const SpringBlocks<Real>& springs() const { return springs_; }
   const Contact<Real>& contact() const { return contact_; }
   const EffectStep<Real>& effects() const { return *effects_; }
+  const DashpotStages<Real>& dashpot_stages() const { return dashpot_stages_; }
   // The record of a state from which on the effects' internal variables stand, and that behind.
   int first_internal() const { return springs_.spare_node + 1; }
   int state_size() const { return first_internal() + effects_->extra_records(); }
@@ -99,8 +103,7 @@ class LevelStep {
   template <class OtherContacts>
   void Advance(const LevelSubstep<Real>& now, const State& state, State* next, Impacts* impacts,
                LevelBuffers<Real>* buffers, const OtherContacts& other_contacts) const {
-    std::fill(buffers->force.begin(), buffers->force.end(), NodeForce<Real>{});
-    effects_->AddForces(EffectsOf(now, state), next, &buffers->force, &buffers->effects);
+    AddForces(now, state, next, buffers);
     kernel_->update_velocities(now.nodes, state.data(), buffers->force.data(), next->data());
     contact_.Apply(state, now.pairs, now.geoms, now.elapsed, now.h, next, impacts);
     other_contacts(next);
@@ -126,8 +129,15 @@ class LevelStep {
   }
 
  private:
+  // Sets buffers->force, and the internal variables of `next`.
+  void AddForces(const LevelSubstep<Real>& now, const State& state, State* next,
+                 LevelBuffers<Real>* buffers) const;
+  void RepeatForces(const LevelSubstep<Real>& now, const State& state,
+                    LevelBuffers<Real>* buffers) const;
+
   const Kernel<Real>* kernel_;
   SpringBlocks<Real> springs_;
+  DashpotStages<Real> dashpot_stages_;
   Contact<Real> contact_;
   Eigen::Vector3d gravity_;  // the environment's, m/s^2
   ControllerMask released_;

@@ -106,6 +106,7 @@ SpringBlocks<Real>::SpringBlocks(const SpringMassSystem& system)
       b.push_back(e < 0 ? spare_node : system.springs[e][0] + system.springs[e][1] - block.a);
     }
   }
+  slack.assign(spring.size(), Real(0));
   SetParameters(system);
 }
 

@@ -22,6 +22,7 @@ struct SpringBlocks {
   std::vector<Real> stiffness;    // (4 blocks) k, N/m
   std::vector<Real> rest_length;  // (4 blocks) L, m
   std::vector<Real> dashpot;      // (4 blocks) c, N s/m
+  std::vector<Real> slack;        // (4 blocks) 0, N/m
   std::vector<int> spring;        // (4 blocks) index in SpringMassSystem::springs; -1 = filling
   int spare_node = 0;
 
@@ -32,6 +33,11 @@ struct SpringBlocks {
 
   SpringView<Real> View() const {
     return {blocks(), a.data(), b.data(), stiffness.data(), rest_length.data(), dashpot.data()};
+  }
+
+  // The same with stiffness 0.
+  SpringView<Real> Dashpots() const {
+    return {blocks(), a.data(), b.data(), slack.data(), rest_length.data(), dashpot.data()};
   }
 
   // Takes over the parameters of a system of the same topology.

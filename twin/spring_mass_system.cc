@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/dashpot_stages.h"
 #include "twin/effects/registry.h"
 #include "twin/error.h"
 #include "twin/level_numbers.h"
@@ -101,6 +102,10 @@ void SpringMassSystem::Validate(const std::string& where) const {
   ValidatePositions(*this, where);
   ValidateSprings(*this, where);
   ValidateNumbers(*this, where);
+  if (dashpot_stages < 1 || dashpot_stages > kMostDashpotStages) {
+    throw Error(fmt::format("{}: dashpot_stages is {}, expected 1 to {}", where, dashpot_stages,
+                            kMostDashpotStages));
+  }
   for (const EffectValues& effect : effects) ValidateEffect(effect, where);
 }
 

@@ -37,6 +37,9 @@ struct SpringMassSystem {
   Eigen::VectorXd rest_length;              // (springs), m, > 0
   Eigen::VectorXd dashpot;                  // (springs), N s/m, >= 0
   double drag = 0;                          // 1/s, >= 0: v <- v exp(-h drag)
+  // Into how many stages a sub-step takes the dashpots (dashpot_stages.h), >= 1. A training takes
+  // as many as cost least, up to this.
+  int dashpot_stages = 1;
 
   Rod rod;  // of nodes and controllers; empty if the body is no rod
   // Physics besides that of springs, drag and contact; they act in this order.

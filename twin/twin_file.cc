@@ -64,6 +64,9 @@ void StoreLevel(const TwinLevel& level, const std::string& prefix, Npz& arrays) 
   for (const auto& [a, b] : system.springs) ends.insert(ends.end(), {a, b});
   arrays[prefix + "springs"] = NpzArray::Ints({system.springs.size(), 2}, ends.data());
   arrays[prefix + "substeps_per_second"] = NpzArray::Ints({}, &level.substeps_per_second);
+  if (system.dashpot_stages > 1) {
+    arrays[prefix + "dashpot_stages"] = NpzArray::Ints({}, &system.dashpot_stages);
+  }
   if (!level.assignment.empty()) {
     arrays[prefix + "assignment"] =
         NpzArray::Ints({level.assignment.size()}, level.assignment.data());
@@ -271,6 +274,9 @@ TwinLevel ReadLevel(NpzFields fields, const std::string& where, std::size_t n, i
   if (fields.Has(prefix + "effects")) {
     level.system.effects =
         EffectsFromJson(fields.Text(prefix + "effects"), where + ": array 'effects'");
+  }
+  if (fields.Has(prefix + "dashpot_stages")) {  // absent where it is 1
+    level.system.dashpot_stages = fields.Ints(prefix + "dashpot_stages", {})[0];
   }
   level.system.Validate(where);
   if (level.system.springs.empty())

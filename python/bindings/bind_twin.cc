@@ -118,6 +118,9 @@ void BindLevel(nb::module_& module) {
       "substeps_per_second", [](const TwinLevel& self) { return self.substeps_per_second; },
       "With which it was trained.");
   level.def_prop_ro(
+      "dashpot_stages", [](const TwinLevel& self) { return self.system.dashpot_stages; },
+      "Into how many stages a sub-step takes the dashpots.");
+  level.def_prop_ro(
       "assignment", [](const TwinLevel& self) { return FrozenCopyOf(self.assignment); },
       "(nodes of the level below,) the node of this level; empty at level 0.", kHasOwner);
   level.def_prop_ro(

@@ -121,6 +121,8 @@ TEST_F(TwinFile, RefusesWhatDisagrees) {
       {"level1/collision_distance", Scalar(-1), "collision_distance is -1, expected 0 or more"},
       {"level1/contact_radius", Vector({0, -1}), "contact_radius[1] is -1"},
       {"level1/substeps_per_second", Scalar(0), "holds 0, expected more than 0"},
+      {"level1/dashpot_stages", Scalar(0), "level 1: dashpot_stages is 0, expected 1 to 8"},
+      {"level1/dashpot_stages", Scalar(9), "dashpot_stages is 9, expected 1 to 8"},
       {"level1/substeps_per_second", Scalar(0.5), "holds 0.5, expected whole numbers"},
       {"fps", Scalar(0), "array 'fps' holds 0, expected more than 0"},
       {"order", Vector({1, 2}), "array 'order' has the shape (2,)"},

@@ -7,6 +7,7 @@
 #include "trainer/bodies/factors.h"
 #include "trainer/bodies/spring_modes.h"
 #include "trainer/solvers/levenberg_marquardt.h"
+#include "twin/dashpot_stages.h"
 
 namespace physpring {
 namespace {
@@ -63,8 +64,9 @@ double MeanLogLoss(const SpringMassSystem& system, bool hands) {
   return sum / count;
 }
 
-// The fastest mode's frequency times the sub-step, at most; 2 would leave no room for dashpots.
-constexpr double kStiffest = 1.8;
+// The fastest mode's frequency times the sub-step, at most, as a part of what is stable: all of it
+// would leave no room for dashpots.
+constexpr double kStiffest = 0.9;
 
 }  // namespace
 
@@ -110,8 +112,9 @@ Eigen::MatrixXd SmoothBody::Precision(const Eigen::VectorXd& x) const {
 SpringMassSystem SmoothBody::Apply(const Eigen::VectorXd& x) const {
   SpringMassSystem system = factors_.Apply(x);
   if (LimitDashpots(timestep(), &system)) return system;
-  const double root = timestep() * ComputeStabilityBound(system).omega_max;
-  system.stiffness *= std::pow(kStiffest / root, 2);
+  const StabilityBound bound = ComputeStabilityBound(system);
+  const double limit = LimitsOfStages(system.dashpot_stages).stiffness;
+  system.stiffness *= limit * std::pow(kStiffest / (timestep() * bound.omega_max), 2);
   LimitDashpots(timestep(), &system);
   return system;
 }
@@ -157,7 +160,8 @@ SpringMassSystem SmoothBody::NearestTo(const SpringMassSystem& system) const {
 }
 
 bool SmoothBody::IsLimited(const Eigen::VectorXd& x) const {
-  return ComputeStabilityBound(factors_.Apply(x)).timestep < timestep();
+  const SpringMassSystem system = factors_.Apply(x);
+  return ComputeStabilityBound(system).CheapestTimestep(system.dashpot_stages) < timestep();
 }
 
 }  // namespace physpring

@@ -26,11 +26,10 @@ constexpr double kClocks = 0.25;  // of recordings of two clocks
 Twin TwinOf(const SpringMassSystem& system, const Body& body, const FitData& data,
             const TrainOptions& options) {
   const Recording& first = data.recordings[0];
-  const int substeps = options.substeps > 0 ? options.substeps
-                                            : StableSubsteps(ComputeStabilityBound(system),
-                                                             1 / first.fps, kStepSafety);
+  const FrameCut cut = CutFrames(1 / first.fps, options.substeps, system);
   Twin twin = DenseTwin(first, system, body.controller_velocity, options.seed);
-  twin.levels[0].substeps_per_second = static_cast<int>(std::ceil(substeps * first.fps));
+  twin.levels[0].system.dashpot_stages = cut.dashpot_stages;
+  twin.levels[0].substeps_per_second = static_cast<int>(std::ceil(cut.substeps * first.fps));
   return twin;
 }
 

@@ -20,7 +20,7 @@ double FreeMotionError::operator()(const Eigen::VectorXd& factors) const {
   RolloutOptions rollout = follow_.rollout;
   const LiftedMotion::Substeps substeps = motion_.SubstepsOf(system);
   if (substeps.empty()) return std::numeric_limits<double>::infinity();
-  rollout.substeps = *std::max_element(substeps.begin(), substeps.end());
+  rollout.substeps = *std::max_element(substeps.counts.begin(), substeps.counts.end());
   return GeometricTrackError(system, episodes_, FrameUse::kFit, rollout);
 }
 

@@ -197,8 +197,7 @@ FittedLevel FitLevel(const FitData& data, const TrainOptions& options,
   const SpringMassSystem system =
       FitSpringsOfLevel(model, model.Corrected(values), common.mean_square,
                         work.Part("single springs of coarse levels", kNetworkDone, 1));
-  return {{system, model.twin().levels.back().assignment, model.SubstepsPerSecond(system)},
-          values.weights};
+  return {model.LevelOf(system), values.weights};
 }
 
 }  // namespace physpring

@@ -87,12 +87,13 @@ double LevelModel::HeldBackError(const SpringMassSystem& system) const {
   return sum / motion.episode_count();
 }
 
-int LevelModel::SubstepsPerSecond(const SpringMassSystem& system) const {
+TwinLevel LevelModel::LevelOf(const SpringMassSystem& system) const {
   const double fps = first().fps;
-  const int substeps = options_.substeps > 0
-                           ? options_.substeps
-                           : StableSubsteps(ComputeStabilityBound(system), 1 / fps, kStepSafety);
-  return static_cast<int>(std::ceil(substeps * fps));
+  const FrameCut cut = CutFrames(1 / fps, options_.substeps, system);
+  TwinLevel level{system, twin_.levels.back().assignment,
+                  static_cast<int>(std::ceil(cut.substeps * fps))};
+  level.system.dashpot_stages = cut.dashpot_stages;
+  return level;
 }
 
 }  // namespace physpring

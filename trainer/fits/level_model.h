@@ -52,7 +52,8 @@ class LevelModel {
   // motions that slip at one moment or another would decide by chance. Infinite where it diverges.
   double HeldBackError(const SpringMassSystem& system) const;
 
-  int SubstepsPerSecond(const SpringMassSystem& system) const;
+  // `system` as a level of the twin, with the sub-steps that it needs.
+  TwinLevel LevelOf(const SpringMassSystem& system) const;
 
  private:
   LiftedMotion::Options MotionOptions(int threads, double gain) const;

@@ -119,8 +119,8 @@ double ToleranceFor(const Stage& stage, int residuals) {
 // Sub-steps a second.
 double HighestRate(const LiftedMotion::Substeps& substeps, const std::vector<Episode>& episodes) {
   double highest = 0;
-  for (std::size_t e = 0; e < substeps.size(); ++e) {
-    highest = std::max(highest, substeps[e] * episodes[e].recording->fps);
+  for (std::size_t e = 0; e < substeps.counts.size(); ++e) {
+    highest = std::max(highest, substeps.counts[e] * episodes[e].recording->fps);
   }
   return highest;
 }

@@ -145,14 +145,13 @@ void Refinement::ShortenSubsteps(const Work& work) {
   if (options_.substeps != 0 || !HaveOneFrameRate(episodes_)) return;
   const int most = static_cast<int>(MostRate(options_, recording_) / recording_.fps);
   for (int round = 0; round < kMostRounds; ++round) {
-    const int stable =
-        StableSubsteps(ComputeStabilityBound(best_.fit.System()), 1 / recording_.fps, kStepSafety);
+    const int stable = CutFrames(1 / recording_.fps, 0, best_.fit.System()).substeps;
     const int now = std::max(stable, best_.substeps);
     const bool limited = best_.fit.body.IsLimited(best_.fit.x);
     const int finer = limited ? most : std::min(static_cast<int>(kFiner * now), most);
     if (finer < kLeastFiner * now) return;
     SmoothBody::Options freer = best_.fit.body.options();
-    freer.most_rate = finer * recording_.fps;
+    freer.most_rate = std::max(freer.most_rate, finer * recording_.fps);
     const SmoothBody body(best_.fit.body.factors().base(), recording_, *best_.model.body.kind,
                           freer);
     options_.substeps = finer;

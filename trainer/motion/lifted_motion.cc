@@ -63,24 +63,42 @@ LiftedMotion::LiftedMotion(const Twin& twin, int level, std::vector<Episode> epi
 }
 
 LiftedMotion::Substeps LiftedMotion::SubstepsOf(const SpringMassSystem& system) const {
-  if (options_.rollout.substeps > 0) return Substeps(episodes_.size(), options_.rollout.substeps);
-  const StabilityBound bound = ComputeStabilityBound(system);
   Substeps substeps;
+  if (episodes_.empty()) return substeps;
+  const int given = options_.rollout.substeps;
+  if (given > 0) {
+    substeps.counts.assign(episodes_.size(), given);
+    for (const Episode& episode : episodes_) {
+      const FrameCut cut = CutFrames(1 / episode.recording->fps, given, system);
+      substeps.dashpot_stages = std::max(substeps.dashpot_stages, cut.dashpot_stages);
+    }
+    return substeps;
+  }
+  const StabilityBound bound = ComputeStabilityBound(system);
+  const double first_fps = episodes_[0].recording->fps;
+  substeps.dashpot_stages =
+      CheapestCut(bound, 1 / first_fps, options_.safety, system.dashpot_stages).dashpot_stages;
+  const double timestep = bound.TimestepOf(substeps.dashpot_stages);
   for (const Episode& episode : episodes_) {
     const double fps = episode.recording->fps;
-    const int needed = StableSubsteps(bound, 1 / fps, options_.safety);
-    if (needed > options_.most_substeps || needed * fps > options_.most_rate) return {};
-    substeps.push_back(std::max(needed, static_cast<int>(std::ceil(options_.least_rate / fps))));
+    const int needed = StableSubsteps(timestep, 1 / fps, options_.safety);
+    const double plain = needed * CostOf(substeps.dashpot_stages);
+    if (plain > options_.most_substeps || plain * fps > options_.most_rate) return {};
+    substeps.counts.push_back(
+        std::max(needed, static_cast<int>(std::ceil(options_.least_rate / fps))));
   }
   return substeps;
 }
 
 bool LiftedMotion::AreEnough(const Substeps& substeps, const SpringMassSystem& system) const {
+  const double cost = CostOf(substeps.dashpot_stages);
   const auto are_enough_for = [&](const StabilityBound& bound) {
-    for (std::size_t e = 0; e < substeps.size(); ++e) {
+    const double timestep = bound.TimestepOf(substeps.dashpot_stages);
+    for (std::size_t e = 0; e < substeps.counts.size(); ++e) {
       const double fps = episodes_[e].recording->fps;
-      if (StableSubsteps(bound, 1 / fps, kLargestSafety) > substeps[e]) return false;
-      if (StableSubsteps(bound, 1 / fps, options_.safety) * fps > options_.most_rate) return false;
+      if (StableSubsteps(timestep, 1 / fps, kLargestSafety) > substeps.counts[e]) return false;
+      const int needed = StableSubsteps(timestep, 1 / fps, options_.safety);
+      if (needed * cost * fps > options_.most_rate) return false;
     }
     return true;
   };
@@ -90,7 +108,7 @@ bool LiftedMotion::AreEnough(const Substeps& substeps, const SpringMassSystem& s
 
 RolloutOptions LiftedMotion::RolloutOf(int e, const Substeps& substeps) const {
   RolloutOptions options = options_.rollout;
-  options.substeps = substeps[e];
+  options.substeps = substeps.counts[e];
   return options;
 }
 
@@ -116,17 +134,18 @@ std::optional<LiftedMotion::Motion> LiftedMotion::RunOne(int e, const SpringMass
                                                          const Substeps& substeps) const {
   Motion motion;
   if (episodes_[e].frames < 2) return motion;
-  const bool before = episodes_[e].before_change;
-  motion.rollout =
-      RollOut(before ? BeforeChange(system) : system, EpisodeOfNodes(e), RolloutOf(e, substeps));
+  SpringMassSystem moved = episodes_[e].before_change ? BeforeChange(system) : system;
+  moved.dashpot_stages = substeps.dashpot_stages;
+  motion.rollout = RollOut(moved, EpisodeOfNodes(e), RolloutOf(e, substeps));
   if (motion.rollout->diverged()) return {};
   if (!lifts_.empty()) motion.lifted = Lifted(e, motion.rollout->positions());
   return motion;
 }
 
 std::vector<std::optional<std::vector<Points>>> LiftedMotion::RunSideBySide(
-    int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const {
+    int e, std::vector<SpringMassSystem> systems, const Substeps& substeps) const {
   if (episodes_[e].frames < 2) return {systems.size(), std::vector<Points>()};
+  for (SpringMassSystem& system : systems) system.dashpot_stages = substeps.dashpot_stages;
   if (!episodes_[e].before_change) return RunAll(e, systems, substeps);
   // systems that differ in new effects alone move alike before the change: each goes once
   std::vector<SpringMassSystem> unlike;

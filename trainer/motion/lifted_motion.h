@@ -23,9 +23,10 @@ class LiftedMotion {
   struct Options {
     RolloutOptions rollout;       // substeps: 0 = from the stability bound
     double safety = kStepSafety;  // sub-step as a part of the largest stable one
-    int most_substeps = 2000;     // sub-steps a frame; a stiffer system cannot be rolled out
-    double least_rate = 0;        // sub-steps a second, at least ...
-    // ... and at most; a stiffer system cannot be rolled out.
+    // Sub-steps a frame, in those of one dashpot stage; a dearer system cannot be rolled out.
+    int most_substeps = 2000;
+    double least_rate = 0;  // sub-steps a second, at least ...
+    // ... and at most, in those of one dashpot stage; a dearer system cannot be rolled out.
     double most_rate = std::numeric_limits<double>::infinity();
     std::size_t lasting_effects = 0;  // only the first so many act in episodes before a change
     int threads = 1;
@@ -52,9 +53,15 @@ class LiftedMotion {
   const Episode& episode(int e) const { return episodes_[static_cast<std::size_t>(e)]; }
   int threads() const { return options_.threads; }
 
-  using Substeps = std::vector<int>;  // sub-steps a frame, one number for each episode
+  struct Substeps {
+    std::vector<int> counts;  // sub-steps a frame, one number for each episode
+    int dashpot_stages = 1;
 
-  // As many sub-steps as the system needs; empty if that is too many.
+    bool empty() const { return counts.empty(); }
+    auto operator<=>(const Substeps&) const = default;
+  };
+
+  // The cheapest that are stable with at most the system's stages; empty if that is too many.
   Substeps SubstepsOf(const SpringMassSystem& system) const;
   // Whether the system is stable with these sub-steps, and needs no more than the options allow.
   bool AreEnough(const Substeps& substeps, const SpringMassSystem& system) const;
@@ -65,7 +72,7 @@ class LiftedMotion {
   // The particles of episode `e` in each frame, for each of the systems; nothing where the rollout
   // diverges. The same as from one after the other (lane_rollout.h).
   std::vector<std::optional<std::vector<Points>>> RunSideBySide(
-      int e, const std::vector<SpringMassSystem>& systems, const Substeps& substeps) const;
+      int e, std::vector<SpringMassSystem> systems, const Substeps& substeps) const;
   // The motions of all episodes; nothing where a rollout diverges or there are no `substeps`.
   std::optional<std::vector<Motion>> Run(const SpringMassSystem& system,
                                          const Substeps& substeps) const;

@@ -44,13 +44,17 @@ double MeanTrackError(const Episode& episode, FrameUse use, const std::vector<Po
 bool VisitMotions(
     const SpringMassSystem& system, const std::vector<Episode>& episodes, RolloutOptions options,
     const std::function<void(const Episode&, const std::vector<Points>& particles)>& visit) {
-  const bool automatic = options.substeps == 0;
-  const StabilityBound bound = automatic ? ComputeStabilityBound(system) : StabilityBound{};
+  const int given = options.substeps;
+  SpringMassSystem cut_system = system;
+  double cut_fps = 0;
   for (const Episode& episode : episodes) {
-    if (automatic) {
-      options.substeps = StableSubsteps(bound, 1 / episode.recording->fps, kStepSafety);
+    if (const double fps = episode.recording->fps; fps != cut_fps) {
+      const FrameCut cut = CutFrames(1 / fps, given, system);
+      options.substeps = cut.substeps;
+      cut_system.dashpot_stages = cut.dashpot_stages;
+      cut_fps = fps;
     }
-    const auto rollout = RollOut(system, episode, options);
+    const auto rollout = RollOut(cut_system, episode, options);
     if (rollout->diverged()) return false;
     visit(episode, rollout->positions());
   }

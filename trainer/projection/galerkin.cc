@@ -137,6 +137,7 @@ Projection Project(const SpringMassSystem& fine, const Assignment& assignment,
   Projection projection;
   projection.system.controllers = fine.controllers;
   projection.system.drag = fine.drag;
+  projection.system.dashpot_stages = fine.dashpot_stages;
   projection.system.contact = fine.contact;
   projection.system.effects = fine.effects;
   ProjectNodes(fine, assignment, sizes, up, &projection.system);

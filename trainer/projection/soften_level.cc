@@ -9,13 +9,17 @@
 namespace physpring {
 
 int MostSubstepsOfLevels(const TwinLevel& dense, double fps) {
-  return std::max(StableSubsteps(ComputeStabilityBound(dense.system), 1 / fps, kStepSafety),
-                  static_cast<int>(std::ceil(dense.substeps_per_second / fps)));
+  const int stages = dense.system.dashpot_stages;
+  const double stable = ComputeStabilityBound(dense.system).CheapestTimestep(stages);
+  return std::max(StableSubsteps(stable, 1 / fps, kStepSafety),
+                  static_cast<int>(std::ceil(dense.substeps_per_second / fps * CostOf(stages))));
 }
 
 void SoftenLevel(int most_substeps, double fps, SpringMassSystem* level) {
+  const int stages = level->dashpot_stages;
   const double timestep = 1 / (fps * most_substeps * kStepSafety);
-  if (ComputeStabilityBound(*level).timestep < timestep) SoftenStiffNodes(timestep, level);
+  if (ComputeStabilityBound(*level).CheapestTimestep(stages) >= timestep) return;
+  SoftenStiffNodes(timestep * CostOf(stages), level);
 }
 
 }  // namespace physpring

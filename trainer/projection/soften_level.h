@@ -8,10 +8,11 @@
 
 namespace physpring {
 
-// The most sub-steps of a frame: as many as level 0, `dense`, needs.
+// The most sub-steps of a frame, in those of one dashpot stage: what level 0, `dense`, needs.
 int MostSubstepsOfLevels(const TwinLevel& dense, double fps);
 
-// Softens the springs at nodes that need more sub-steps a frame than so many.
+// Softens the springs at nodes that need more sub-steps a frame than cost as much as so many of one
+// dashpot stage.
 void SoftenLevel(int most_substeps, double fps, SpringMassSystem* level);
 
 }  // namespace physpring

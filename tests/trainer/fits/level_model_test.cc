@@ -26,7 +26,7 @@ TEST(LevelModel, SoftensAProjectionThatNeedsMoreSubstepsThanLevel0) {
   const LevelModel model(data, options, twin, network);
   const SpringMassSystem& softened = model.twin().levels[1].system;
   EXPECT_LT(softened.stiffness.maxCoeff(), level.stiffness.maxCoeff());
-  EXPECT_LE(model.SubstepsPerSecond(softened), twin.levels[0].substeps_per_second);
+  EXPECT_LE(model.LevelOf(softened).substeps_per_second, twin.levels[0].substeps_per_second);
   const LiftedMotion motion = model.Motion(1, 0, 1);
   EXPECT_TRUE(motion.Run(softened, motion.SubstepsOf(softened)).has_value());
 }
