@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace physpring {
 namespace {
@@ -64,115 +65,102 @@ template <class Real>
 DashpotStages<Real>::DashpotStages(int stages) {
   const Chebyshev chebyshev(stages);
   const std::vector<double>& T = chebyshev.value;
-  const double first = stages == 1 ? 1 : chebyshev.w1 / chebyshev.w0;
-  double before = 0, kick = first;  // q_j-1, q_j
-  for (int j = 1; j <= stages; ++j) {
-    DashpotStage<Real> stage{static_cast<Real>(kick), 0, 0, 0};
-    if (j < stages) {
-      const double twice = 2 * T[j] / T[j + 1], back = T[j - 1] / T[j + 1];
-      const double keep = twice * chebyshev.w0, take = twice * chebyshev.w1;
-      stage.keep = static_cast<Real>(keep);
-      stage.take = static_cast<Real>(take);
-      stage.back = static_cast<Real>(back);
-      const double next = keep * kick + take - back * before;
-      before = kick;
-      kick = next;
+  double before = 0, kick = 0;  // q_j-1, q_j
+  for (int j = 0; j < stages; ++j) {
+    double keep = 0, take = stages == 1 ? 1 : chebyshev.w1 / chebyshev.w0, back = 0;
+    if (j > 0) {
+      const double twice = 2 * T[j] / T[j + 1];
+      keep = twice * chebyshev.w0;
+      take = twice * chebyshev.w1;
+      back = T[j - 1] / T[j + 1];
     }
-    stages_.push_back(stage);
+    const double next = keep * kick + take - back * before;
+    before = kick;
+    kick = next;
+    stages_.push_back({static_cast<Real>(keep), static_cast<Real>(take), static_cast<Real>(back),
+                       static_cast<Real>(kick)});
   }
 }
 
 template <class Real>
-void DashpotStages<Real>::Apply(const Kernel<Real>& kernel, const SpringView<Real>& dashpots,
+void DashpotStages<Real>::Apply(const Kernel<Real>& kernel, const SpringView<Real>& springs,
                                 const NodeView<Real>& nodes, const NodeStates<Real>& state,
                                 NodeForces<Real>* force, DashpotBuffers<Real>* buffers) const {
-  const int stages = count();
-  if (stages == 1) return;
+  if (count() == 1) return;
   const std::size_t columns = force->size();
-  buffers->stage.resize(stages - 1);
-  buffers->effect.resize(stages + 1);
-  for (NodeForces<Real>& effect : buffers->effect) effect.resize(columns);
-  std::fill(buffers->effect[0].begin(), buffers->effect[0].end(), NodeForce<Real>{});
-  for (std::size_t i = 0; i < columns; ++i) {
-    for (int k = 0; k < 3; ++k) buffers->effect[1][i].f[k] = first() * (*force)[i].f[k];
+  buffers->direction.resize(3 * static_cast<std::size_t>(kSpringBlock) * springs.blocks);
+  buffers->velocity.resize(stages_.size());
+  buffers->next.resize(columns);
+  for (NodeForces<Real>* zero : {&buffers->before, &buffers->effect, &buffers->dashpots}) {
+    zero->assign(columns, {});
   }
-  for (int j = 1; j < stages; ++j) {
-    const auto [kick, keep, take, back] = stage(j);
-    const NodeForces<Real>&effect = buffers->effect[j], &before = buffers->effect[j - 1];
-    NodeStates<Real>& at = buffers->stage[j - 1];
-    at.resize(columns);
-    for (std::size_t i = 0; i < columns; ++i) {
-      for (int k = 0; k < 3; ++k) at[i].x[k] = state[i].x[k];
+  kernel.measure_directions(springs, state.data(), buffers->direction.data());
+  for (int j = 0; j < count(); ++j) {
+    if (j > 0) {
+      kernel.add_dashpot_forces(springs, buffers->direction.data(), buffers->velocity[j - 1].data(),
+                                buffers->dashpots.data());
     }
-    for (int i = 0; i < nodes.nodes; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        at[i].v[k] = nodes.h_over_mass[i] * effect[i].f[k] + kick * nodes.kick.f[k];
-      }
-    }
-    buffers->force = *force;
-    kernel.add_spring_forces(dashpots, at.data(), buffers->force.data());
-    NodeForces<Real>& next = buffers->effect[j + 1];
-    for (std::size_t i = 0; i < columns; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        next[i].f[k] =
-            (keep * effect[i].f[k] + take * buffers->force[i].f[k]) - back * before[i].f[k];
-      }
-    }
+    NodeForces<Real>& velocity = buffers->velocity[j];
+    velocity.resize(columns);  // controllers and the spare node: 0
+    kernel.advance_stage(nodes, {stage(j), static_cast<int>(columns), force->data(),
+                                 buffers->dashpots.data(), buffers->before.data(),
+                                 buffers->effect.data(), buffers->next.data(), velocity.data()});
+    std::swap(buffers->before, buffers->effect);
+    std::swap(buffers->effect, buffers->next);
   }
-  *force = buffers->effect[stages];
+  std::swap(*force, buffers->effect);
 }
 
 template <class Real>
 void DashpotStages<Real>::ApplyAdjoint(const Kernel<Real>& kernel, const SpringView<Real>& dashpots,
-                                       const NodeView<Real>& nodes, NodeForces<Real>* force_bar,
-                                       NodeStates<Real>* state_bar, Real* dashpot_bar,
-                                       const NodeGradientView<Real>& gradient,
+                                       const NodeView<Real>& nodes, const NodeStates<Real>& state,
+                                       NodeForces<Real>* force_bar, NodeStates<Real>* state_bar,
+                                       Real* dashpot_bar, const NodeGradientView<Real>& gradient,
                                        DashpotBuffers<Real>* buffers) const {
-  const int stages = count();
-  if (stages == 1) return;
+  if (count() == 1) return;
   const std::size_t columns = force_bar->size();
-  std::vector<NodeForces<Real>>& effect_bar = buffers->effect_bar;
-  effect_bar.assign(stages + 1, NodeForces<Real>(columns));
-  effect_bar[stages] = *force_bar;
-  buffers->force_bar.assign(columns, {});
-  buffers->stage_force_bar.assign(columns, {});
   const auto springs = static_cast<std::size_t>(kSpringBlock) * dashpots.blocks;
   buffers->unused_stiffness.assign(springs, 0);
   buffers->unused_rest_length.assign(springs, 0);
-  for (int j = stages - 1; j >= 1; --j) {
-    const auto [kick, keep, take, back] = stage(j);
-    // forward: E_j+1 = keep E_j + take G_j - back E_j-1
+  buffers->stage.assign(state.begin(), state.begin() + static_cast<std::ptrdiff_t>(columns));
+  NodeForces<Real>&effect_bar = buffers->effect_bar, &before_bar = buffers->before_bar;
+  effect_bar = *force_bar;  // d loss / d E_j+1, and / d E_j
+  before_bar.assign(columns, {});
+  buffers->sum_bar.assign(columns, {});
+  force_bar->assign(columns, {});
+  for (int j = count() - 1; j >= 0; --j) {
+    const auto [keep, take, back, next_kick] = stage(j);
+    // forward: E_j+1 = keep E_j + take (F + D R_j) - back E_j-1
     for (std::size_t i = 0; i < columns; ++i) {
       for (int k = 0; k < 3; ++k) {
-        const Real bar = effect_bar[j + 1][i].f[k];
-        effect_bar[j][i].f[k] += keep * bar;
-        effect_bar[j - 1][i].f[k] -= back * bar;
-        buffers->stage_force_bar[i].f[k] = take * bar;
-        buffers->force_bar[i].f[k] += take * bar;
+        const Real bar = effect_bar[i].f[k];
+        buffers->sum_bar[i].f[k] = take * bar;
+        (*force_bar)[i].f[k] += take * bar;
+        effect_bar[i].f[k] = before_bar[i].f[k] + keep * bar;
+        before_bar[i].f[k] = -back * bar;
       }
     }
-    // forward: G_j = F + D(x) R_j
+    if (j == 0) break;
+    const NodeForces<Real>& velocity = buffers->velocity[j - 1];
+    for (std::size_t i = 0; i < columns; ++i) {
+      for (int k = 0; k < 3; ++k) buffers->stage[i].v[k] = velocity[i].f[k];
+    }
     buffers->stage_bar.assign(columns, {});
     kernel.add_spring_forces_adjoint(
-        dashpots, buffers->stage[j - 1].data(), buffers->stage_force_bar.data(),
-        buffers->stage_bar.data(),
+        dashpots, buffers->stage.data(), buffers->sum_bar.data(), buffers->stage_bar.data(),
         {buffers->unused_stiffness.data(), buffers->unused_rest_length.data(), dashpot_bar});
     for (std::size_t i = 0; i < columns; ++i) {
       for (int k = 0; k < 3; ++k) (*state_bar)[i].x[k] += buffers->stage_bar[i].x[k];
     }
     // forward: R_j = h / m E_j + q_j h g
+    const Real kick = stage(j - 1).kick;
     for (int i = 0; i < nodes.nodes; ++i) {
       for (int k = 0; k < 3; ++k) {
         const Real bar = buffers->stage_bar[i].v[k];
-        effect_bar[j][i].f[k] += nodes.h_over_mass[i] * bar;
-        gradient.mass[i].f[k] += bar * (nodes.h_over_mass[i] * buffers->effect[j][i].f[k]);
+        effect_bar[i].f[k] += nodes.h_over_mass[i] * bar;
+        gradient.mass[i].f[k] += bar * (velocity[i].f[k] - kick * nodes.kick.f[k]);
         gradient.gravity->f[k] += kick * bar;
       }
-    }
-  }
-  for (std::size_t i = 0; i < columns; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      (*force_bar)[i].f[k] = buffers->force_bar[i].f[k] + first() * effect_bar[1][i].f[k];
     }
   }
 }

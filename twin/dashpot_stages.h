@@ -3,10 +3,9 @@
 // semi-implicit Euler. The forces F at (x, v) become mean forces over the sub-step, by damped
 // Chebyshev polynomials (the stabilised method of first order of Sommeijer, Shampine, Verwer, RKC,
 // 1998):
-//   E_0 = 0,  E_1 = first F
+//   E_0 = E_-1 = 0,  R_0 = 0
+//   E_j+1 = keep_j E_j + take_j (F + D(x) R_j) - back_j E_j-1   D: dashpots exert D(x) v
 //   R_j = h / m E_j + q_j h g                  by how much velocities change up to stage j
-//   G_j = F + D(x) R_j                         D: the dashpots' forces are D(x) v
-//   E_j+1 = keep_j E_j + take_j G_j - back_j E_j-1
 // E_s takes the place of F. One stage is E_1 = F. A mode whose damping rate is gamma is damped by
 //   P(h gamma) = T_s(w0 - w1 h gamma) / T_s(w0),  w0 = 1 + 1 / s^2,  w1 = T_s(w0) / T_s'(w0)
 // of its velocity, which is 1 - h gamma + O(h^2 gamma^2), and between -0.47 and 0.47 from where it
@@ -30,23 +29,16 @@ struct DashpotLimits {
 };
 DashpotLimits LimitsOfStages(int stages);
 
-// The coefficients of one stage.
-template <class Real>
-struct DashpotStage {
-  Real kick;              // q_j
-  Real keep, take, back;  // of E_j, G_j, E_j-1 in E_j+1
-};
-
 // What a sub-step works in.
 template <class Real>
 struct DashpotBuffers {
-  std::vector<NodeStates<Real>> stage;   // x, R_j; for j from 1 on
-  std::vector<NodeForces<Real>> effect;  // E_j, for j from 0 on
-  NodeForces<Real> force;                // G_j
+  std::vector<Real> direction;             // of the springs
+  std::vector<NodeForces<Real>> velocity;  // R_1 ... R_s, m/s
+  NodeForces<Real> before, effect, next;   // E_j-1, E_j, E_j+1
+  NodeForces<Real> dashpots;               // D R_j
   // of the adjoint
-  NodeStates<Real> next, stage_bar;
-  std::vector<NodeForces<Real>> effect_bar;
-  NodeForces<Real> force_bar, stage_force_bar;
+  NodeStates<Real> next_state, stage, stage_bar;
+  NodeForces<Real> before_bar, effect_bar, force_bar, sum_bar;
   std::vector<Real> unused_stiffness, unused_rest_length;
 };
 
@@ -56,25 +48,23 @@ class DashpotStages {
   explicit DashpotStages(int stages);
 
   int count() const { return static_cast<int>(stages_.size()); }
-  Real first() const { return stages_[0].kick; }
-  // Stage j, from 1 on, that leads to j + 1.
-  const DashpotStage<Real>& stage(int j) const { return stages_[j - 1]; }
+  // That leads to E_j+1.
+  const StageWeights<Real>& stage(int j) const { return stages_[j]; }
 
-  // `dashpots`: the springs, of stiffness 0. `force`: in F, out E_s, of nodes, controllers and the
-  // spare node.
-  void Apply(const Kernel<Real>& kernel, const SpringView<Real>& dashpots,
+  // `force`: in F, out E_s, of nodes, controllers and the spare node.
+  void Apply(const Kernel<Real>& kernel, const SpringView<Real>& springs,
              const NodeView<Real>& nodes, const NodeStates<Real>& state, NodeForces<Real>* force,
              DashpotBuffers<Real>* buffers) const;
 
-  // Adjoint of Apply, which was called before with the same arguments. `force_bar`: in d loss / d
-  // E_s, out d loss / d F. Adds to the others.
+  // Adjoint of Apply, which was called before with the same arguments. `dashpots`: the springs, of
+  // stiffness 0. `force_bar`: in d loss / d E_s, out d loss / d F. Adds to the others.
   void ApplyAdjoint(const Kernel<Real>& kernel, const SpringView<Real>& dashpots,
-                    const NodeView<Real>& nodes, NodeForces<Real>* force_bar,
-                    NodeStates<Real>* state_bar, Real* dashpot_bar,
+                    const NodeView<Real>& nodes, const NodeStates<Real>& state,
+                    NodeForces<Real>* force_bar, NodeStates<Real>* state_bar, Real* dashpot_bar,
                     const NodeGradientView<Real>& gradient, DashpotBuffers<Real>* buffers) const;
 
  private:
-  std::vector<DashpotStage<Real>> stages_;
+  std::vector<StageWeights<Real>> stages_;
 };
 
 }  // namespace physpring

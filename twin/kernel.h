@@ -65,6 +65,24 @@ struct NodeGradientView {
   NodeForce<Real>* gravity;  // (1)
 };
 
+// One stage of dashpots (dashpot_stages.h): E_j+1 and R_j+1 from E_j, E_j-1, F and D R_j.
+template <class Real>
+struct StageWeights {
+  Real keep, take, back;  // of E_j, of F + D R_j, of E_j-1
+  Real kick;              // q_j+1
+};
+template <class Real>
+struct StageView {
+  StageWeights<Real> weights;
+  int columns;                    // nodes, controllers and the spare node
+  const NodeForce<Real>* force;   // F, N
+  NodeForce<Real>* dashpots;      // D R_j, N; 0 afterwards
+  const NodeForce<Real>* before;  // E_j-1, N
+  const NodeForce<Real>* effect;  // E_j, N
+  NodeForce<Real>* next;          // E_j+1, N
+  NodeForce<Real>* velocity;      // R_j+1, m/s, of the nodes
+};
+
 template <class Real>
 struct Kernel {
   const char* name;
@@ -75,6 +93,13 @@ struct Kernel {
   void (*add_spring_forces_adjoint)(SpringView<Real> springs, const NodeState<Real>* state,
                                     const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
                                     SpringGradientView<Real> gradient);
+  // The direction n of every spring, 3 x (4 blocks); 0 of one that is too short to have one.
+  void (*measure_directions)(SpringView<Real> springs, const NodeState<Real>* state,
+                             Real* direction);
+  // Adds c (u . n) n, by those directions and the velocities of the nodes.
+  void (*add_dashpot_forces)(SpringView<Real> springs, const Real* direction,
+                             const NodeForce<Real>* velocity, NodeForce<Real>* force);
+  void (*advance_stage)(const NodeView<Real>& nodes, const StageView<Real>& stage);
   void (*update_velocities)(const NodeView<Real>& nodes, const NodeState<Real>* state,
                             const NodeForce<Real>* force, NodeState<Real>* next);
   void (*update_velocities_adjoint)(const NodeView<Real>& nodes, const NodeState<Real>* state,

@@ -156,6 +156,46 @@ struct VectorKernel {
     }
   }
 
+  static void MeasureDirections(SpringView<Real> springs, const NodeState<Real>* state,
+                                Real* direction) {
+    const int count = kSpringBlock * springs.blocks;
+    for (int i = 0; i < springs.blocks / Lanes::kBlocks; ++i) {
+      V d[3], u[3];
+      Subtract(springs, i, state, d, u);
+      const V inverse = Lanes::Inverse(Lanes::Sqrt(Law::Dot(d, d)));
+      for (int j = 0; j < 3; ++j)
+        Lanes::Store(d[j] * inverse, direction + count * j + kSprings * i);
+    }
+  }
+
+  static void AddDashpotForces(SpringView<Real> springs, const Real* direction,
+                               const NodeForce<Real>* velocity, NodeForce<Real>* force) {
+    const int count = kSpringBlock * springs.blocks;
+    for (int i = 0; i < springs.blocks / Lanes::kBlocks; ++i) {
+      V u[3], n[3];
+      Subtract(springs, i, velocity, u);
+      for (int j = 0; j < 3; ++j) n[j] = Lanes::Load(direction + count * j + kSprings * i);
+      const V scale = Lanes::Load(springs.dashpot + kSprings * i) * Law::Dot(n, u);
+      const V on_b[3] = {scale * n[0], scale * n[1], scale * n[2]};
+      Lanes::AddTo(force, springs.a + Lanes::kBlocks * i, springs.b + kSprings * i, on_b);
+    }
+  }
+
+  static void AdvanceStage(const NodeView<Real>& nodes, const StageView<Real>& stage) {
+    const Quad keep = Lanes::SetQuad(stage.weights.keep), take = Lanes::SetQuad(stage.weights.take);
+    const Quad back = Lanes::SetQuad(stage.weights.back);
+    const Quad kick = Lanes::SetQuad(stage.weights.kick) * Lanes::LoadQuad(nodes.kick.f);
+    for (int i = 0; i < stage.columns; ++i) {
+      const Quad sum = Lanes::LoadQuad(stage.force[i].f) + Lanes::LoadQuad(stage.dashpots[i].f);
+      const Quad next = (keep * Lanes::LoadQuad(stage.effect[i].f) + take * sum) -
+                        back * Lanes::LoadQuad(stage.before[i].f);
+      Lanes::StoreQuad(next, stage.next[i].f);
+      Lanes::StoreQuad(Lanes::SetQuad(0), stage.dashpots[i].f);
+      if (i >= nodes.nodes) continue;
+      Lanes::StoreQuad(next * Lanes::SetQuad(nodes.h_over_mass[i]) + kick, stage.velocity[i].f);
+    }
+  }
+
   static void UpdateVelocities(const NodeView<Real>& nodes, const NodeState<Real>* state,
                                const NodeForce<Real>* force, NodeState<Real>* next) {
     const Quad kick = Lanes::LoadQuad(nodes.kick.f), decay = Lanes::SetQuad(nodes.decay);
@@ -205,8 +245,10 @@ struct VectorKernel {
   }
 
   static constexpr Kernel<Real> kKernel = {
-      Lanes::kName,     MeasureSprings,          AddSpringForces, AddSpringForcesAdjoint,
-      UpdateVelocities, UpdateVelocitiesAdjoint, UpdatePositions, UpdatePositionsAdjoint};
+      Lanes::kName,           MeasureSprings,        AddSpringForces,
+      AddSpringForcesAdjoint, MeasureDirections,     AddDashpotForces,
+      AdvanceStage,           UpdateVelocities,      UpdateVelocitiesAdjoint,
+      UpdatePositions,        UpdatePositionsAdjoint};
 };
 
 }  // namespace physpring

@@ -54,6 +54,17 @@ struct LaneGround {
   const Real* pyramidal;    // (1) the cone: 1, or 0 if elliptic
 };
 
+// One stage of dashpots: StageView of all lanes, with the same weights.
+template <class Real>
+struct LaneStage {
+  StageWeights<Real> weights;
+  int columns;
+  const Real* force;
+  Real* dashpots;
+  const Real *before, *effect;
+  Real *next, *velocity;
+};
+
 template <class Real>
 struct LaneKernel {
   const char* name;
@@ -63,6 +74,12 @@ struct LaneKernel {
   void (*measure_springs)(const LaneSprings<Real>& springs, const Real* state, Real* length,
                           Real* rate);
   void (*add_spring_forces)(const LaneSprings<Real>& springs, const Real* state, Real* force);
+  // The direction of every spring, 3 (4 blocks), coordinate by coordinate for each spring.
+  void (*measure_directions)(const LaneSprings<Real>& springs, const Real* state, Real* direction);
+  // Of dashpots whose directions are given; the velocities of the nodes stand as forces do.
+  void (*add_dashpot_forces)(const LaneSprings<Real>& springs, const Real* direction,
+                             const Real* velocity, Real* force);
+  void (*advance_stage)(const LaneNodes<Real>& nodes, const LaneStage<Real>& stage);
   void (*update_velocities)(const LaneNodes<Real>& nodes, const Real* state, const Real* force,
                             Real* next);
   void (*update_positions)(const LaneNodes<Real>& nodes, const Real* state, Real* next);

@@ -111,6 +111,68 @@ struct LaneVectorKernel {
     for (int j = 0; j < 3; ++j) Store(Load(a, j) - sum[j], a, j);
   }
 
+  static void MeasureDirections(const LaneSprings<Real>& springs, const Real* state,
+                                Real* direction) {
+    for (int i = 0; i < springs.blocks; ++i) {
+      Block block;
+      block.Measure(springs, i, state);
+      for (int s = 0; s < kSpringBlock; ++s) {
+        for (int j = 0; j < 3; ++j) {
+          Store(block.d[s][j] * block.inverse[s], direction, 3 * (kSpringBlock * i + s) + j);
+        }
+      }
+    }
+  }
+
+  static void AddDashpotForces(const LaneSprings<Real>& springs, const Real* direction,
+                               const Real* velocity, Real* force) {
+    for (int i = 0; i < springs.blocks; ++i) {
+      const Real* of_a = velocity + kLanes * kLaneForce * springs.a[i];
+      const V v[3] = {Load(of_a, 0), Load(of_a, 1), Load(of_a, 2)};
+      Real* a = force + kLanes * kLaneForce * springs.a[i];
+      V sum[3];
+      for (int s = 0; s < kSpringBlock; s += 2) {
+        V pair[2][3];
+        for (int t = 0; t < 2; ++t) {
+          const int spring = kSpringBlock * i + s + t;
+          const int b = kLanes * kLaneForce * springs.b[spring];
+          V u[3], n[3];
+          for (int j = 0; j < 3; ++j) {
+            u[j] = v[j] - Load(velocity + b, j);
+            n[j] = Load(direction, 3 * spring + j);
+          }
+          const V scale = Load(springs.parameters, kLaneSpring * spring + 2) * Law::Dot(n, u);
+          Real* f = force + b;
+          for (int j = 0; j < 3; ++j) {
+            pair[t][j] = scale * n[j];
+            Store(Load(f, j) + pair[t][j], f, j);
+          }
+        }
+        for (int j = 0; j < 3; ++j) {
+          const V both = pair[0][j] + pair[1][j];
+          sum[j] = s == 0 ? both : sum[j] + both;
+        }
+      }
+      for (int j = 0; j < 3; ++j) Store(Load(a, j) - sum[j], a, j);
+    }
+  }
+
+  static void AdvanceStage(const LaneNodes<Real>& nodes, const LaneStage<Real>& stage) {
+    const V keep = Lanes::Set(stage.weights.keep), take = Lanes::Set(stage.weights.take);
+    const V back = Lanes::Set(stage.weights.back), kick = Lanes::Set(stage.weights.kick);
+    for (int i = 0; i < stage.columns; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const int at = kLaneForce * i + j;
+        const V sum = Load(stage.force, at) + Load(stage.dashpots, at);
+        const V next = (keep * Load(stage.effect, at) + take * sum) - back * Load(stage.before, at);
+        Store(next, stage.next, at);
+        Store(V{}, stage.dashpots, at);
+        if (i >= nodes.nodes) continue;
+        Store(next * Load(nodes.h_over_mass, i) + kick * Load(nodes.kick, j), stage.velocity, at);
+      }
+    }
+  }
+
   static void UpdateVelocities(const LaneNodes<Real>& nodes, const Real* state, const Real* force,
                                Real* next) {
     const V decay = Load(nodes.decay, 0);
@@ -233,8 +295,9 @@ struct LaneVectorKernel {
   }
 
   static constexpr LaneKernel<Real> kKernel = {
-      Lanes::kName,     kLanes,          Lanes::kTime, MeasureSprings, AddSpringForces,
-      UpdateVelocities, UpdatePositions, HitGround,    Interleave,     Separate};
+      Lanes::kName,      kLanes,           Lanes::kTime, MeasureSprings,   AddSpringForces,
+      MeasureDirections, AddDashpotForces, AdvanceStage, UpdateVelocities, UpdatePositions,
+      HitGround,         Interleave,       Separate};
 };
 
 }  // namespace physpring

@@ -28,11 +28,12 @@ LaneStep<Real>::LaneStep(const std::vector<const LevelStep<Real>*>& levels,
       length_(springs_, kernel.lanes),
       rate_(springs_, kernel.lanes),
       tension_(springs_, kernel.lanes),
-      dashpots_(Staged(kLaneSpring * springs_), kernel.lanes),
-      stage_(Staged(kLaneState * level().first_internal()), kernel.lanes),
-      stage_force_(Staged(kLaneForce * level().first_internal()), kernel.lanes),
+      direction_(Staged(3 * springs_), kernel.lanes),
+      velocity_(Staged(kLaneForce * level().first_internal()), kernel.lanes),
+      staged_(Staged(kLaneForce * level().first_internal()), kernel.lanes),
       before_(Staged(kLaneForce * level().first_internal()), kernel.lanes),
-      effect_(Staged(kLaneForce * level().first_internal()), kernel.lanes),
+      effect_(before_),
+      after_(before_),
       effects_(levels.size()),
       impacts_(levels.size()),
       own_(kernel.lanes, nullptr),
@@ -54,10 +55,6 @@ void LaneStep<Real>::SetParameters(const std::vector<NodeView<Real>>& nodes) {
       spring[0] = springs.stiffness[i];
       spring[lanes] = springs.rest_length[i];
       spring[2 * lanes] = springs.dashpot[i];
-      if (!HasStages()) continue;
-      Real* dashpot = dashpots_.data() + kLaneSpring * lanes * i + lane;
-      dashpot[lanes] = spring[lanes];
-      dashpot[2 * lanes] = spring[2 * lanes];
     }
     for (int i = 0; i < nodes_; ++i) {
       h_over_mass_.data()[lanes * i + lane] = nodes[n].h_over_mass[i];
@@ -155,37 +152,21 @@ void LaneStep<Real>::AddNodeForces(const Lanes& lanes) {
 template <class Real>
 void LaneStep<Real>::ApplyDashpotStages(const Real* state) {
   const DashpotStages<Real>& stages = level().dashpot_stages();
-  const int lanes = kernel_.lanes, forces = kLaneForce * lanes * level().first_internal();
   const SpringView<Real> view = level().springs().View();
-  Real *force = force_.data(), *before = before_.data(), *effect = effect_.data();
-  before_.Clear();
-  for (int i = 0; i < forces; ++i) effect[i] = stages.first() * force[i];
-  std::copy(state, state + kLaneState * lanes * level().first_internal(), stage_.data());
-  for (int i = nodes_; i < level().first_internal(); ++i) {
-    std::fill_n(stage_.data() + (kLaneState * i + kLaneVelocity) * lanes, 3 * lanes, Real(0));
-  }
-  for (int j = 1; j < stages.count(); ++j) {
-    const auto [kick, keep, take, back] = stages.stage(j);
-    for (int i = 0; i < nodes_; ++i) {
-      Real* v = stage_.data() + (kLaneState * i + kLaneVelocity) * lanes;
-      const Real *own = effect + kLaneForce * lanes * i,
-                 *h_over_mass = h_over_mass_.data() + lanes * i;
-      for (int k = 0; k < 3; ++k) {
-        for (int l = 0; l < lanes; ++l) {
-          v[lanes * k + l] =
-              h_over_mass[l] * own[lanes * k + l] + kick * kick_.data()[lanes * k + l];
-        }
-      }
+  const LaneSprings<Real> springs{view.blocks, view.a, view.b, parameters_.data()};
+  kernel_.measure_directions(springs, state, direction_.data());
+  for (LaneArray<Real>* zero : {&before_, &effect_, &staged_}) zero->Clear();
+  for (int j = 0; j < stages.count(); ++j) {
+    if (j > 0) {
+      kernel_.add_dashpot_forces(springs, direction_.data(), velocity_.data(), staged_.data());
     }
-    std::copy(force, force + forces, stage_force_.data());
-    kernel_.add_spring_forces({view.blocks, view.a, view.b, dashpots_.data()}, stage_.data(),
-                              stage_force_.data());
-    for (int i = 0; i < forces; ++i) {
-      before[i] = (keep * effect[i] + take * stage_force_.data()[i]) - back * before[i];
-    }
-    std::swap(before, effect);
+    kernel_.advance_stage(Nodes(),
+                          {stages.stage(j), level().first_internal(), force_.data(), staged_.data(),
+                           before_.data(), effect_.data(), after_.data(), velocity_.data()});
+    std::swap(before_, effect_);
+    std::swap(effect_, after_);
   }
-  std::copy(effect, effect + forces, force);
+  std::swap(force_, effect_);
 }
 
 template <class Real>

@@ -90,8 +90,8 @@ class LaneStep {
   LaneArray<Real> restitution_, friction_, pyramidal_;
   // what a sub-step works in
   LaneArray<Real> force_, length_, rate_, tension_;
-  // of dashpots in stages: their parameters with stiffness 0, x and R_j, G_j, E_j-1, E_j
-  LaneArray<Real> dashpots_, stage_, stage_force_, before_, effect_;
+  // of dashpots in stages: n, R_j, D R_j, and E_j-1, E_j, E_j+1
+  LaneArray<Real> direction_, velocity_, staged_, before_, effect_, after_;
   std::vector<EffectBuffers<Real>> effects_;                // (lanes)
   std::vector<typename LevelStep<Real>::Impacts> impacts_;  // (lanes)
   std::vector<State*> own_;                                 // (lanes)

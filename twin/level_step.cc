@@ -39,7 +39,7 @@ void LevelStep<Real>::AddForces(const LevelSubstep<Real>& now, const State& stat
                                 LevelBuffers<Real>* buffers) const {
   std::fill(buffers->force.begin(), buffers->force.end(), NodeForce<Real>{});
   effects_->AddForces(EffectsOf(now, state), next, &buffers->force, &buffers->effects);
-  dashpot_stages_.Apply(*kernel_, springs_.Dashpots(), now.nodes, state, &buffers->force,
+  dashpot_stages_.Apply(*kernel_, springs_.View(), now.nodes, state, &buffers->force,
                         &buffers->dashpots);
 }
 
@@ -66,8 +66,8 @@ void LevelStep<Real>::AdvanceAdjoint(const LevelSubstep<Real>& now, const State&
   if (dashpot_stages_.count() > 1) RepeatForces(now, state, buffers);
   kernel_->update_velocities_adjoint(now.nodes, state.data(), next->data(), state_bar->data(),
                                      buffers->force.data(), gradient);
-  dashpot_stages_.ApplyAdjoint(*kernel_, springs_.Dashpots(), now.nodes, &buffers->force, state_bar,
-                               buffers->spring_gradient.dashpot.data(), gradient,
+  dashpot_stages_.ApplyAdjoint(*kernel_, springs_.Dashpots(), now.nodes, state, &buffers->force,
+                               state_bar, buffers->spring_gradient.dashpot.data(), gradient,
                                &buffers->dashpots);
   effects_->AddForcesAdjoint(EffectsOf(now, state), buffers->force, state_bar,
                              buffers->spring_gradient.View(), &buffers->effects);
@@ -77,8 +77,8 @@ void LevelStep<Real>::AdvanceAdjoint(const LevelSubstep<Real>& now, const State&
 template <class Real>
 void LevelStep<Real>::RepeatForces(const LevelSubstep<Real>& now, const State& state,
                                    LevelBuffers<Real>* buffers) const {
-  buffers->dashpots.next.resize(state.size());
-  AddForces(now, state, &buffers->dashpots.next, buffers);
+  buffers->dashpots.next_state.resize(state.size());
+  AddForces(now, state, &buffers->dashpots.next_state, buffers);
   // controllers and the spare node feel no force: their entries stay 0
   std::fill(buffers->force.begin(), buffers->force.end(), NodeForce<Real>{});
 }

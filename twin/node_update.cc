@@ -23,6 +23,21 @@ void UpdatePositions(const NodeView<Real>& nodes, const NodeState<Real>* state,
 }
 
 template <class Real>
+void AdvanceStage(const NodeView<Real>& nodes, const StageView<Real>& stage) {
+  const auto [keep, take, back, kick] = stage.weights;
+  for (int i = 0; i < stage.columns; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Real sum = stage.force[i].f[j] + stage.dashpots[i].f[j];
+      const Real next = (keep * stage.effect[i].f[j] + take * sum) - back * stage.before[i].f[j];
+      stage.next[i].f[j] = next;
+      stage.dashpots[i].f[j] = 0;
+      if (i >= nodes.nodes) continue;
+      stage.velocity[i].f[j] = next * nodes.h_over_mass[i] + kick * nodes.kick.f[j];
+    }
+  }
+}
+
+template <class Real>
 void UpdatePositionsAdjoint(const NodeView<Real>& nodes, NodeState<Real>* state_bar) {
   for (int i = 0; i < nodes.nodes; ++i) {
     // forward: x' = x + h v'
@@ -50,6 +65,8 @@ void UpdateVelocitiesAdjoint(const NodeView<Real>& nodes, const NodeState<Real>*
   }
 }
 
+template void AdvanceStage(const NodeView<float>&, const StageView<float>&);
+template void AdvanceStage(const NodeView<double>&, const StageView<double>&);
 template void UpdateVelocities(const NodeView<float>&, const NodeState<float>*,
                                const NodeForce<float>*, NodeState<float>*);
 template void UpdateVelocities(const NodeView<double>&, const NodeState<double>*,

@@ -21,6 +21,10 @@ template <class Real>
 void UpdatePositions(const NodeView<Real>& nodes, const NodeState<Real>* state,
                      NodeState<Real>* next);
 
+// One stage of dashpots (dashpot_stages.h).
+template <class Real>
+void AdvanceStage(const NodeView<Real>& nodes, const StageView<Real>& stage);
+
 // The adjoints. state_bar: in d loss / d next, out d loss / d state at given forces.
 template <class Real>
 void UpdatePositionsAdjoint(const NodeView<Real>& nodes, NodeState<Real>* state_bar);

@@ -26,6 +26,15 @@ void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* sta
                             const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
                             SpringGradientView<Real> gradient);
 
+// The direction of every spring, from b to a, 3 x springs: a row for each coordinate.
+template <class Real>
+void MeasureDirections(SpringView<Real> springs, const NodeState<Real>* state, Real* direction);
+
+// Adds the force of every dashpot, whose direction is given, to its two nodes.
+template <class Real>
+void AddDashpotForces(SpringView<Real> springs, const Real* direction,
+                      const NodeForce<Real>* velocity, NodeForce<Real>* force);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_SPRING_FORCE_H_

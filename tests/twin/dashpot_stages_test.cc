@@ -98,7 +98,8 @@ TEST(DashpotStages, MoveAsShortSubstepsDo) {
 TEST(DashpotStages, OneStageIsThePlainSubstep) {
   const DashpotStages<double> one(1);
   EXPECT_EQ(one.count(), 1);
-  EXPECT_EQ(one.first(), 1);
+  EXPECT_EQ(one.stage(0).take, 1);
+  EXPECT_EQ(one.stage(0).kick, 1);
 }
 
 TEST(DashpotStages, KeepMomentum) {
