@@ -84,21 +84,18 @@ DashpotStages<Real>::DashpotStages(int stages) {
 
 template <class Real>
 void DashpotStages<Real>::Apply(const Kernel<Real>& kernel, const SpringView<Real>& springs,
-                                const NodeView<Real>& nodes, const NodeStates<Real>& state,
-                                NodeForces<Real>* force, DashpotBuffers<Real>* buffers) const {
+                                const NodeView<Real>& nodes, NodeForces<Real>* force,
+                                DashpotBuffers<Real>* buffers) const {
   if (count() == 1) return;
   const std::size_t columns = force->size();
-  buffers->direction.resize(3 * static_cast<std::size_t>(kSpringBlock) * springs.blocks);
   buffers->velocity.resize(stages_.size());
   buffers->next.resize(columns);
   for (NodeForces<Real>* zero : {&buffers->before, &buffers->effect, &buffers->dashpots}) {
     zero->assign(columns, {});
   }
-  kernel.measure_directions(springs, state.data(), buffers->direction.data());
   for (int j = 0; j < count(); ++j) {
     if (j > 0) {
-      kernel.add_dashpot_forces(springs, buffers->direction.data(), buffers->velocity[j - 1].data(),
-                                buffers->dashpots.data());
+      kernel.add_dashpot_forces(springs, buffers->velocity[j - 1].data(), buffers->dashpots.data());
     }
     NodeForces<Real>& velocity = buffers->velocity[j];
     velocity.resize(columns);  // controllers and the spare node: 0

@@ -32,7 +32,7 @@ DashpotLimits LimitsOfStages(int stages);
 // What a sub-step works in.
 template <class Real>
 struct DashpotBuffers {
-  std::vector<Real> direction;             // of the springs
+  std::vector<Real> direction;             // SpringView::direction
   std::vector<NodeForces<Real>> velocity;  // R_1 ... R_s, m/s
   NodeForces<Real> before, effect, next;   // E_j-1, E_j, E_j+1
   NodeForces<Real> dashpots;               // D R_j
@@ -51,9 +51,10 @@ class DashpotStages {
   // That leads to E_j+1.
   const StageWeights<Real>& stage(int j) const { return stages_[j]; }
 
-  // `force`: in F, out E_s, of nodes, controllers and the spare node.
+  // `force`: in F, out E_s, of nodes, controllers and the spare node. The springs' directions are
+  // those of F.
   void Apply(const Kernel<Real>& kernel, const SpringView<Real>& springs,
-             const NodeView<Real>& nodes, const NodeStates<Real>& state, NodeForces<Real>* force,
+             const NodeView<Real>& nodes, NodeForces<Real>* force,
              DashpotBuffers<Real>* buffers) const;
 
   // Adjoint of Apply, which was called before with the same arguments. `dashpots`: the springs, of

@@ -26,6 +26,9 @@ struct SpringView {
   const Real* rest_length;        // (4 blocks) L, m
   const Real* dashpot;            // (4 blocks) c, N s/m
   const Real* tension = nullptr;  // (4 blocks) T that effects add, N; null: none
+  // 3 x (4 blocks): where add_spring_forces writes the springs' directions n to, 0 of one that is
+  // too short to have one; null: nowhere.
+  Real* direction = nullptr;
 };
 
 // What T depends on (twin/effects/spring_tension.h), and where the adjoint of it begins.
@@ -93,12 +96,9 @@ struct Kernel {
   void (*add_spring_forces_adjoint)(SpringView<Real> springs, const NodeState<Real>* state,
                                     const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
                                     SpringGradientView<Real> gradient);
-  // The direction n of every spring, 3 x (4 blocks); 0 of one that is too short to have one.
-  void (*measure_directions)(SpringView<Real> springs, const NodeState<Real>* state,
-                             Real* direction);
-  // Adds c (u . n) n, by those directions and the velocities of the nodes.
-  void (*add_dashpot_forces)(SpringView<Real> springs, const Real* direction,
-                             const NodeForce<Real>* velocity, NodeForce<Real>* force);
+  // Adds c (u . n) n, from springs.direction and the velocities of the nodes.
+  void (*add_dashpot_forces)(SpringView<Real> springs, const NodeForce<Real>* velocity,
+                             NodeForce<Real>* force);
   void (*advance_stage)(const NodeView<Real>& nodes, const StageView<Real>& stage);
   void (*update_velocities)(const NodeView<Real>& nodes, const NodeState<Real>* state,
                             const NodeForce<Real>* force, NodeState<Real>* next);

@@ -66,15 +66,21 @@ struct VectorKernel {
 
   static void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                               NodeForce<Real>* force) {
-    springs.tension != nullptr ? AddForces<true>(springs, state, force)
-                               : AddForces<false>(springs, state, force);
+    if (springs.direction == nullptr) {
+      springs.tension != nullptr ? AddForces<true, false>(springs, state, force)
+                                 : AddForces<false, false>(springs, state, force);
+    } else {
+      springs.tension != nullptr ? AddForces<true, true>(springs, state, force)
+                                 : AddForces<false, true>(springs, state, force);
+    }
   }
 
-  // Two functions, so that springs without effects do not pay for them.
-  template <bool kHasTension>
+  // Several functions, so that springs without effects do not pay for them.
+  template <bool kHasTension, bool kWantsDirections>
   static void AddForces(SpringView<Real> springs, const NodeState<Real>* state,
                         NodeForce<Real>* force) {
     V d[kChunk][3], d_d[kChunk], d_u[kChunk], scale[kChunk];
+    [[maybe_unused]] const int springs_count = kSpringBlock * springs.blocks;
     const int vectors = springs.blocks / Lanes::kBlocks;
     for (int first = 0; first < vectors; first += kChunk) {
       const int count = first + kChunk < vectors ? kChunk : vectors - first;
@@ -83,6 +89,12 @@ struct VectorKernel {
         if constexpr (kHasTension) law.T = Lanes::Load(springs.tension + kSprings * (first + i));
         law.Evaluate(d_d[i], d_u[i]);
         scale[i] = law.scale;
+        if constexpr (kWantsDirections) {
+          for (int j = 0; j < 3; ++j) {
+            Lanes::Store(d[i][j] * law.inverse,
+                         springs.direction + springs_count * j + kSprings * (first + i));
+          }
+        }
       };
       for (int i = 0; i < count; ++i) {
         V u[3];
@@ -156,25 +168,13 @@ struct VectorKernel {
     }
   }
 
-  static void MeasureDirections(SpringView<Real> springs, const NodeState<Real>* state,
-                                Real* direction) {
-    const int count = kSpringBlock * springs.blocks;
-    for (int i = 0; i < springs.blocks / Lanes::kBlocks; ++i) {
-      V d[3], u[3];
-      Subtract(springs, i, state, d, u);
-      const V inverse = Lanes::Inverse(Lanes::Sqrt(Law::Dot(d, d)));
-      for (int j = 0; j < 3; ++j)
-        Lanes::Store(d[j] * inverse, direction + count * j + kSprings * i);
-    }
-  }
-
-  static void AddDashpotForces(SpringView<Real> springs, const Real* direction,
-                               const NodeForce<Real>* velocity, NodeForce<Real>* force) {
+  static void AddDashpotForces(SpringView<Real> springs, const NodeForce<Real>* velocity,
+                               NodeForce<Real>* force) {
     const int count = kSpringBlock * springs.blocks;
     for (int i = 0; i < springs.blocks / Lanes::kBlocks; ++i) {
       V u[3], n[3];
       Subtract(springs, i, velocity, u);
-      for (int j = 0; j < 3; ++j) n[j] = Lanes::Load(direction + count * j + kSprings * i);
+      for (int j = 0; j < 3; ++j) n[j] = Lanes::Load(springs.direction + count * j + kSprings * i);
       const V scale = Lanes::Load(springs.dashpot + kSprings * i) * Law::Dot(n, u);
       const V on_b[3] = {scale * n[0], scale * n[1], scale * n[2]};
       Lanes::AddTo(force, springs.a + Lanes::kBlocks * i, springs.b + kSprings * i, on_b);
@@ -245,10 +245,9 @@ struct VectorKernel {
   }
 
   static constexpr Kernel<Real> kKernel = {
-      Lanes::kName,           MeasureSprings,        AddSpringForces,
-      AddSpringForcesAdjoint, MeasureDirections,     AddDashpotForces,
-      AdvanceStage,           UpdateVelocities,      UpdateVelocitiesAdjoint,
-      UpdatePositions,        UpdatePositionsAdjoint};
+      Lanes::kName,     MeasureSprings,        AddSpringForces,  AddSpringForcesAdjoint,
+      AddDashpotForces, AdvanceStage,          UpdateVelocities, UpdateVelocitiesAdjoint,
+      UpdatePositions,  UpdatePositionsAdjoint};
 };
 
 }  // namespace physpring

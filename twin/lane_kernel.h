@@ -28,6 +28,7 @@ struct LaneSprings {
   const int* b;                   // (4 blocks) the other node of each spring
   const Real* parameters;         // (4 blocks) k, L, c
   const Real* tension = nullptr;  // (4 blocks) T that effects add, N; null: none
+  Real* direction = nullptr;      // 3 (4 blocks), as in SpringView, spring by spring
 };
 
 // What moves the free nodes, besides the springs.
@@ -74,11 +75,8 @@ struct LaneKernel {
   void (*measure_springs)(const LaneSprings<Real>& springs, const Real* state, Real* length,
                           Real* rate);
   void (*add_spring_forces)(const LaneSprings<Real>& springs, const Real* state, Real* force);
-  // The direction of every spring, 3 (4 blocks), coordinate by coordinate for each spring.
-  void (*measure_directions)(const LaneSprings<Real>& springs, const Real* state, Real* direction);
-  // Of dashpots whose directions are given; the velocities of the nodes stand as forces do.
-  void (*add_dashpot_forces)(const LaneSprings<Real>& springs, const Real* direction,
-                             const Real* velocity, Real* force);
+  // The velocities of the nodes stand as forces do.
+  void (*add_dashpot_forces)(const LaneSprings<Real>& springs, const Real* velocity, Real* force);
   void (*advance_stage)(const LaneNodes<Real>& nodes, const LaneStage<Real>& stage);
   void (*update_velocities)(const LaneNodes<Real>& nodes, const Real* state, const Real* force,
                             Real* next);

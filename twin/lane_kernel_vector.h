@@ -66,27 +66,32 @@ struct LaneVectorKernel {
   }
 
   static void AddSpringForces(const LaneSprings<Real>& springs, const Real* state, Real* force) {
-    springs.tension != nullptr ? AddForces<true>(springs, state, force)
-                               : AddForces<false>(springs, state, force);
+    if (springs.direction == nullptr) {
+      springs.tension != nullptr ? AddForces<true, false>(springs, state, force)
+                                 : AddForces<false, false>(springs, state, force);
+    } else {
+      springs.tension != nullptr ? AddForces<true, true>(springs, state, force)
+                                 : AddForces<false, true>(springs, state, force);
+    }
   }
 
-  // Two functions, so that springs without effects do not pay for them. A block is measured before
-  // the forces of the one before it are added: else the processor would wait for the roots.
-  template <bool kHasTension>
+  // Several functions, so that springs without effects do not pay for them. A block is measured
+  // before the forces of the one before it are added: else the processor would wait for the roots.
+  template <bool kHasTension, bool kWantsDirections>
   static void AddForces(const LaneSprings<Real>& springs, const Real* state, Real* force) {
     if (springs.blocks == 0) return;
     Block even, odd;
     even.Measure(springs, 0, state);
     for (int i = 0; i < springs.blocks; i += 2) {
       odd.Measure(springs, i + 1, state);
-      AddBlock<kHasTension>(springs, i, even, force);
+      AddBlock<kHasTension, kWantsDirections>(springs, i, even, force);
       if (i + 2 < springs.blocks) even.Measure(springs, i + 2, state);
-      AddBlock<kHasTension>(springs, i + 1, odd, force);
+      AddBlock<kHasTension, kWantsDirections>(springs, i + 1, odd, force);
     }
   }
 
   // f_b += scale d, f_a -= the sum of the block
-  template <bool kHasTension>
+  template <bool kHasTension, bool kWantsDirections>
   static void AddBlock(const LaneSprings<Real>& springs, int i, const Block& block, Real* force) {
     Real* a = force + kLanes * kLaneForce * springs.a[i];
     const int* b = springs.b + kSpringBlock * i;
@@ -100,6 +105,10 @@ struct LaneVectorKernel {
         Real* f = force + kLanes * kLaneForce * b[s + t];
         for (int j = 0; j < 3; ++j) {
           pair[t][j] = scale * block.d[s + t][j];
+          if constexpr (kWantsDirections) {
+            Store(block.d[s + t][j] * block.inverse[s + t], springs.direction,
+                  3 * (kSpringBlock * i + s + t) + j);
+          }
           Store(Load(f, j) + pair[t][j], f, j);
         }
       }
@@ -111,21 +120,8 @@ struct LaneVectorKernel {
     for (int j = 0; j < 3; ++j) Store(Load(a, j) - sum[j], a, j);
   }
 
-  static void MeasureDirections(const LaneSprings<Real>& springs, const Real* state,
-                                Real* direction) {
-    for (int i = 0; i < springs.blocks; ++i) {
-      Block block;
-      block.Measure(springs, i, state);
-      for (int s = 0; s < kSpringBlock; ++s) {
-        for (int j = 0; j < 3; ++j) {
-          Store(block.d[s][j] * block.inverse[s], direction, 3 * (kSpringBlock * i + s) + j);
-        }
-      }
-    }
-  }
-
-  static void AddDashpotForces(const LaneSprings<Real>& springs, const Real* direction,
-                               const Real* velocity, Real* force) {
+  static void AddDashpotForces(const LaneSprings<Real>& springs, const Real* velocity,
+                               Real* force) {
     for (int i = 0; i < springs.blocks; ++i) {
       const Real* of_a = velocity + kLanes * kLaneForce * springs.a[i];
       const V v[3] = {Load(of_a, 0), Load(of_a, 1), Load(of_a, 2)};
@@ -139,7 +135,7 @@ struct LaneVectorKernel {
           V u[3], n[3];
           for (int j = 0; j < 3; ++j) {
             u[j] = v[j] - Load(velocity + b, j);
-            n[j] = Load(direction, 3 * spring + j);
+            n[j] = Load(springs.direction, 3 * spring + j);
           }
           const V scale = Load(springs.parameters, kLaneSpring * spring + 2) * Law::Dot(n, u);
           Real* f = force + b;
@@ -294,10 +290,10 @@ struct LaneVectorKernel {
     }
   }
 
-  static constexpr LaneKernel<Real> kKernel = {
-      Lanes::kName,      kLanes,           Lanes::kTime, MeasureSprings,   AddSpringForces,
-      MeasureDirections, AddDashpotForces, AdvanceStage, UpdateVelocities, UpdatePositions,
-      HitGround,         Interleave,       Separate};
+  static constexpr LaneKernel<Real> kKernel = {Lanes::kName,   kLanes,           Lanes::kTime,
+                                               MeasureSprings, AddSpringForces,  AddDashpotForces,
+                                               AdvanceStage,   UpdateVelocities, UpdatePositions,
+                                               HitGround,      Interleave,       Separate};
 };
 
 }  // namespace physpring

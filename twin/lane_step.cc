@@ -104,10 +104,11 @@ void LaneStep<Real>::Advance(const Lanes& lanes, const Real* state, Real* next) 
   const SpringView<Real> view = level().springs().View();
   LaneSprings<Real> springs{view.blocks, view.a, view.b, parameters_.data()};
   if (level().effects().tensions().along()) springs.tension = AddTensions(lanes, state);
+  if (HasStages()) springs.direction = direction_.data();
   force_.Clear();
   kernel_.add_spring_forces(springs, state, force_.data());
   if (level().effects().has_node_forces()) AddNodeForces(lanes);
-  if (HasStages()) ApplyDashpotStages(state);
+  if (HasStages()) ApplyDashpotStages(springs);
   kernel_.update_velocities(Nodes(), state, force_.data(), next);
   ApplyContacts(lanes, state, next);
   kernel_.update_positions(Nodes(), state, next);
@@ -150,15 +151,12 @@ void LaneStep<Real>::AddNodeForces(const Lanes& lanes) {
 }
 
 template <class Real>
-void LaneStep<Real>::ApplyDashpotStages(const Real* state) {
+void LaneStep<Real>::ApplyDashpotStages(const LaneSprings<Real>& springs) {
   const DashpotStages<Real>& stages = level().dashpot_stages();
-  const SpringView<Real> view = level().springs().View();
-  const LaneSprings<Real> springs{view.blocks, view.a, view.b, parameters_.data()};
-  kernel_.measure_directions(springs, state, direction_.data());
   for (LaneArray<Real>* zero : {&before_, &effect_, &staged_}) zero->Clear();
   for (int j = 0; j < stages.count(); ++j) {
     if (j > 0) {
-      kernel_.add_dashpot_forces(springs, direction_.data(), velocity_.data(), staged_.data());
+      kernel_.add_dashpot_forces(springs, velocity_.data(), staged_.data());
     }
     kernel_.advance_stage(Nodes(),
                           {stages.stage(j), level().first_internal(), force_.data(), staged_.data(),

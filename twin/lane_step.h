@@ -69,7 +69,7 @@ class LaneStep {
   const Real* AddTensions(const Lanes& lanes, const Real* state);
   void AddNodeForces(const Lanes& lanes);
   // DashpotStages::Apply of all lanes.
-  void ApplyDashpotStages(const Real* state);
+  void ApplyDashpotStages(const LaneSprings<Real>& springs);
   void ApplyContacts(const Lanes& lanes, const Real* state, Real* next);
   void ApplyAllContacts(const Lanes& lanes, const Real* state, Real* next);
   void HitGround(const Real* state, Real* next) const;

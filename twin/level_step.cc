@@ -38,9 +38,13 @@ template <class Real>
 void LevelStep<Real>::AddForces(const LevelSubstep<Real>& now, const State& state, State* next,
                                 LevelBuffers<Real>* buffers) const {
   std::fill(buffers->force.begin(), buffers->force.end(), NodeForce<Real>{});
-  effects_->AddForces(EffectsOf(now, state), next, &buffers->force, &buffers->effects);
-  dashpot_stages_.Apply(*kernel_, springs_.View(), now.nodes, state, &buffers->force,
-                        &buffers->dashpots);
+  EffectSubstep<Real> substep = EffectsOf(now, state);
+  if (dashpot_stages_.count() > 1) {
+    buffers->dashpots.direction.resize(3 * static_cast<std::size_t>(springs_.size()));
+    substep.springs.direction = buffers->dashpots.direction.data();
+  }
+  effects_->AddForces(substep, next, &buffers->force, &buffers->effects);
+  dashpot_stages_.Apply(*kernel_, substep.springs, now.nodes, &buffers->force, &buffers->dashpots);
 }
 
 template <class Real>

@@ -70,6 +70,7 @@ void MeasureSprings(SpringView<Real> springs, const NodeState<Real>* state,
 template <class Real>
 void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                      NodeForce<Real>* force) {
+  const int count = kSpringBlock * springs.blocks;
   for (int block = 0; block < springs.blocks; ++block) {
     const int a = springs.a[block];
     Real on_b[3][kSpringBlock];
@@ -79,6 +80,9 @@ void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
       for (int j = 0; j < 3; ++j) {
         on_b[j][s] = spring.law.scale * spring.d[j];
         force[b].f[j] += on_b[j][s];
+        if (springs.direction != nullptr) {
+          springs.direction[count * j + i] = spring.d[j] * spring.law.inverse;
+        }
       }
     }
     for (int j = 0; j < 3; ++j) force[a].f[j] -= Sum(on_b[j]);
@@ -119,18 +123,8 @@ void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* sta
 }
 
 template <class Real>
-void MeasureDirections(SpringView<Real> springs, const NodeState<Real>* state, Real* direction) {
-  const int count = kSpringBlock * springs.blocks;
-  for (int i = 0; i < count; ++i) {
-    const int a = springs.a[i / kSpringBlock], b = springs.b[i];
-    const Spring<Real> spring = Evaluate(springs, i, state[a], state[b]);
-    for (int j = 0; j < 3; ++j) direction[count * j + i] = spring.d[j] * spring.law.inverse;
-  }
-}
-
-template <class Real>
-void AddDashpotForces(SpringView<Real> springs, const Real* direction,
-                      const NodeForce<Real>* velocity, NodeForce<Real>* force) {
+void AddDashpotForces(SpringView<Real> springs, const NodeForce<Real>* velocity,
+                      NodeForce<Real>* force) {
   const int count = kSpringBlock * springs.blocks;
   for (int block = 0; block < springs.blocks; ++block) {
     const int a = springs.a[block];
@@ -139,7 +133,7 @@ void AddDashpotForces(SpringView<Real> springs, const Real* direction,
       const int i = kSpringBlock * block + s, b = springs.b[i];
       Real u[3], n[3];
       Subtract(velocity[a], velocity[b], u);
-      for (int j = 0; j < 3; ++j) n[j] = direction[count * j + i];
+      for (int j = 0; j < 3; ++j) n[j] = springs.direction[count * j + i];
       const Real scale = springs.dashpot[i] * SpringLaw<OneLane<Real>>::Dot(n, u);
       for (int j = 0; j < 3; ++j) {
         on_b[j][s] = scale * n[j];
@@ -162,11 +156,7 @@ template void AddSpringForcesAdjoint(SpringView<float>, const NodeState<float>*,
 template void AddSpringForcesAdjoint(SpringView<double>, const NodeState<double>*,
                                      const NodeForce<double>*, NodeState<double>*,
                                      SpringGradientView<double>);
-template void MeasureDirections(SpringView<float>, const NodeState<float>*, float*);
-template void MeasureDirections(SpringView<double>, const NodeState<double>*, double*);
-template void AddDashpotForces(SpringView<float>, const float*, const NodeForce<float>*,
-                               NodeForce<float>*);
-template void AddDashpotForces(SpringView<double>, const double*, const NodeForce<double>*,
-                               NodeForce<double>*);
+template void AddDashpotForces(SpringView<float>, const NodeForce<float>*, NodeForce<float>*);
+template void AddDashpotForces(SpringView<double>, const NodeForce<double>*, NodeForce<double>*);
 
 }  // namespace physpring

@@ -14,7 +14,7 @@ void MeasureSprings(SpringView<Real> springs, const NodeState<Real>* state,
                     const NodeForce<Real>* force_bar, SpringMeasures<Real> measures);
 
 // Adds every spring's force to its two nodes. `state` and `force` hold nodes, controllers and the
-// spare node.
+// spare node. Sets springs.direction, where it is given.
 template <class Real>
 void AddSpringForces(SpringView<Real> springs, const NodeState<Real>* state,
                      NodeForce<Real>* force);
@@ -26,14 +26,10 @@ void AddSpringForcesAdjoint(SpringView<Real> springs, const NodeState<Real>* sta
                             const NodeForce<Real>* force_bar, NodeState<Real>* state_bar,
                             SpringGradientView<Real> gradient);
 
-// The direction of every spring, from b to a, 3 x springs: a row for each coordinate.
+// Adds the force of every dashpot to its two nodes, from springs.direction.
 template <class Real>
-void MeasureDirections(SpringView<Real> springs, const NodeState<Real>* state, Real* direction);
-
-// Adds the force of every dashpot, whose direction is given, to its two nodes.
-template <class Real>
-void AddDashpotForces(SpringView<Real> springs, const Real* direction,
-                      const NodeForce<Real>* velocity, NodeForce<Real>* force);
+void AddDashpotForces(SpringView<Real> springs, const NodeForce<Real>* velocity,
+                      NodeForce<Real>* force);
 
 }  // namespace physpring
 
