@@ -78,6 +78,7 @@ std::vector<DiagnosisBody> BodiesOf(const Twin& twin, const Recording& recording
   for (const Body& candidate : CandidateBodies(shaped, options)) {
     SpringMassSystem system = StartSystem(shaped, candidate, kStart);
     system.mass = own.base.mass;
+    system.dashpot_stages = own.base.dashpot_stages;
     system.effects.clear();
     const bool known = std::any_of(bodies.begin(), bodies.end(), [&](const DiagnosisBody& body) {
       return body.controller_velocity == candidate.controller_velocity &&

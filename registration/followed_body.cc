@@ -59,7 +59,6 @@ double MatchWidth(const Points& start) {
 
 std::vector<Points> FollowClouds(const Recording& recording) {
   SpringMassSystem system = MakeStartSystem(recording, {});
-  system.dashpot_stages = 1;
   ScaleToSubsteps(1 / recording.fps, kSubsteps, kStepSafety, &system);
   TrackerBank tracker(system, EnvironmentOf(recording),
                       {1 / recording.fps, kSubsteps, true, LateGraspsOf(recording)},

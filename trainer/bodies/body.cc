@@ -8,6 +8,7 @@
 #include "trainer/bodies/hanging_net.h"
 #include "trainer/bodies/spring_radius.h"
 #include "trainer/bodies/start_system.h"
+#include "twin/dashpot_stages.h"
 #include "twin/stability.h"
 
 namespace physpring {
@@ -51,6 +52,7 @@ SpringMassSystem StartSystem(const Recording& recording, const Body& body, doubl
   SpringMassSystem system = MakeStartSystem(recording, topology);
   if (body.mass.size() > 0) system.mass = body.mass;
   system.contact.surface.cone = body.cone;
+  if (body.kind->has_single_springs()) system.dashpot_stages = kMostDashpotStages;
   ScaleToSubsteps(1 / recording.fps, start_substeps, kStepSafety, &system);
   for (int e = 0; e < body.strain.size(); ++e) {
     const double ratio = RestRatio(body.stretch * body.strain[e]);

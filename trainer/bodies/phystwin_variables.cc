@@ -96,7 +96,6 @@ SpringMassSystem MakePhysTwinSystem(const Recording& recording, const PhysTwinVa
   topology.controller_radius = variables.controller_radius;
   topology.controller_max_neighbours = variables.controller_neighbours;
   SpringMassSystem system = MakeStartSystem(recording, topology);
-  system.dashpot_stages = 1;
   const double mass = system.mass[0];  // all particles weigh the same
   system.stiffness = variables.spring_y * mass * system.rest_length.cwiseInverse();
   system.dashpot.setConstant(variables.dashpot * mass);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "twin/checks/objects.h"
-#include "twin/dashpot_stages.h"
 #include "twin/neighbours.h"
 #include "twin/stability.h"
 
@@ -115,7 +114,6 @@ SpringMassSystem MakeStartSystem(const Recording& recording, const TopologyOptio
   system.stiffness = system.rest_length.cwiseInverse();
   system.dashpot = Eigen::VectorXd::Ones(system.spring_count());
   system.drag = kStartDrag;
-  system.dashpot_stages = kMostDashpotStages;
   system.contact.surface.restitution = kStartRestitution;
   system.contact.surface.friction = kStartFriction;
   system.contact_radius = Eigen::VectorXd::Constant(nodes, ContactRadius(recording));
