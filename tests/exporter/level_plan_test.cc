@@ -56,6 +56,18 @@ TEST(LevelPlan, TakesThePluginWhereTendonsWouldLeaveOutAnEffect) {
   EXPECT_EQ(PlanLevel(twin, 0, options).differences.size(), 1U);
 }
 
+// MuJoCo's tendons know no stages.
+TEST(LevelPlan, TendonsOfALevelWithStagesTakeTheSubstepsOfOneStage) {
+  Twin twin = SmallTwin(1);
+  twin.levels[0].system.dashpot *= 1000;
+  const LevelPlan plain = PlanLevel(twin, 0, {});
+  twin.levels[0].system.dashpot_stages = 8;
+  EXPECT_EQ(PlanLevel(twin, 0, {}).substep, plain.substep);
+  ExportOptions options;
+  options.springs = SpringKind::kPlugin;
+  EXPECT_GT(PlanLevel(twin, 0, options).substep, 10 * plain.substep);
+}
+
 TEST(LevelPlan, RefusesAnUnstableTimestep) {
   ExportOptions options;
   options.timestep = 0.05;

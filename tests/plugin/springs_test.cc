@@ -50,10 +50,13 @@ TEST(Springs, PassiveForceIsThatOfTendonsUnderARotatedParent) {
 }
 
 // 2,000 sub-steps in free flight from random velocities, dragged by 3 controllers on random ways.
-double DistanceFromSimulator(bool controller_velocity, int substeps_in_step) {
+double DistanceFromSimulator(bool controller_velocity, int substeps_in_step,
+                             int dashpot_stages = 1) {
   constexpr int kFrames = 20, kSubsteps = 100;
   constexpr double kSubstep = 0.5e-3;  // s
-  const SpringMassSystem system = RandomSystem(72, 3, 11);
+  SpringMassSystem system = RandomSystem(72, 3, 11);
+  system.dashpot_stages = dashpot_stages;
+  if (dashpot_stages > 1) system.dashpot *= 100;
   const Motion motion(system);
   LevelScene scene(system, {.timestep = kSubstep * substeps_in_step,
                             .substep = kSubstep,
@@ -93,6 +96,12 @@ TEST(Springs, TrajectoryIsThatOfTheSimulator) {
       EXPECT_LT(DistanceFromSimulator(controller_velocity, substeps_in_step), 1e-9)
           << controller_velocity << " " << substeps_in_step;
     }
+  }
+}
+
+TEST(Springs, TrajectoryWithDashpotsInStagesIsThatOfTheSimulator) {
+  for (int substeps_in_step : {1, 4}) {
+    EXPECT_LT(DistanceFromSimulator(true, substeps_in_step, 6), 1e-9) << substeps_in_step;
   }
 }
 

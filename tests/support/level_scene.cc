@@ -77,6 +77,7 @@ Config Attributes(const SpringMassSystem& system, const LevelSceneOptions& optio
               {"dashpot", Join(system.dashpot)},
               {"drag", fmt::to_string(system.drag)},
               {"substep", fmt::to_string(options.substep)},
+              {"dashpot_stages", fmt::to_string(system.dashpot_stages)},
               {"controller_velocity", options.controller_velocity ? "1" : "0"}};
   }
   if (options.contact) {

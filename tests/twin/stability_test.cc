@@ -169,7 +169,7 @@ TEST(SoftenStiffNodes, MakesTheStepStableAndLeavesOtherSprings) {
 }
 
 TEST(Stability, SubstepsAreTheFewestBelowTheBound) {
-  const StabilityBound bound{0, 0, 0.004};
+  const StabilityBound bound{.timestep = 0.004};
   EXPECT_EQ(StableSubsteps(bound, 0.02, 1), 5);
   EXPECT_EQ(StableSubsteps(bound, 0.02, 0.5), 10);
   EXPECT_EQ(StableSubsteps(bound, 0.0201, 1), 6);

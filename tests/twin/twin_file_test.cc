@@ -57,6 +57,15 @@ TEST_F(TwinFile, ReadsBackEveryLevelExactly) {
   }
 }
 
+TEST_F(TwinFile, KeepsTheStagesOfDashpots) {
+  Twin twin = MakeTwin();
+  twin.levels[1].system.dashpot_stages = 5;
+  WriteTwin(twin, path_);
+  const Twin read = ReadTwin(path_);
+  EXPECT_EQ(read.levels[0].system.dashpot_stages, 1);
+  EXPECT_EQ(read.levels[1].system.dashpot_stages, 5);
+}
+
 TEST_F(TwinFile, KeepsARodWithBranchesOnAllLevels) {
   Twin twin = MakeTwin();
   twin.rod = RodOfEdges({{0, 1}, {0, 2}, {0, 3}}, twin.levels[0].system.position);

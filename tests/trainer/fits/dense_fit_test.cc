@@ -310,7 +310,7 @@ TEST(FitDense, OptimizerIsTheOneAskedFor) {
 
 TEST(FitDense, SaysThatTooFewSubstepsWereGiven) {
   FitData data = Swung();
-  data.recordings[0] = SwungRope(kParticles, 400);
+  data.recordings[0] = SwungRope(60, 400);
   TrainOptions options = Options();
   options.substeps = 1;
   try {

@@ -121,7 +121,7 @@ TEST(MotionProblem, GivesResidualsAtSeveralPointsAsAtEach) {
 TEST(MotionProblem, CannotEvaluateASystemThatNeedsTooManySubsteps) {
   Case c;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(c.parameters.size());
-  const int needed = c.Substeps().at(0);
+  const int needed = c.Substeps().counts.at(0);
   EXPECT_NEAR(needed, 8, 1);
   c.options.most_substeps = needed;
   EXPECT_TRUE(c.Problem().Residuals(zero));
