@@ -2,8 +2,9 @@
 // Time of a sub-step, forward and with its gradient, by precision, kernel and size:
 //   substep_benchmark --benchmark_filter=gradient/double --benchmark_repetitions=9
 // Counter `substep`: CPU time of one. `free`: without a ground, forward. `forward_EFFECT` and
-// `gradient_EFFECT`: with an effect along the springs. A rollout that does not fit into memory pays
-// `forward` once more for its gradient.
+// `gradient_EFFECT`: with an effect along the springs. `forward_stages4` and `gradient_stages4`:
+// with dashpots in 4 stages. A rollout that does not fit into memory pays `forward` once more for
+// its gradient.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -22,9 +23,11 @@ struct Case {
   int nodes, springs;
   bool ground;
   const Effect* effect = nullptr;  // along the springs
+  int dashpot_stages = 1;
 
   SpringMassSystem System() const {
     SpringMassSystem system = MakeRope(nodes, springs);
+    system.dashpot_stages = dashpot_stages;
     if (effect) system.effects = {{effect->name(), effect->Starts(system)[0]}};
     return system;
   }
@@ -93,14 +96,16 @@ void Register(const char* precision) {
       const Kernel<Real>* kernel = FindKernel<Real>(name);
       if (kernel == nullptr) continue;
       const auto add = [&](const std::string& what, void (Rope<Real>::*function)(), bool ground,
-                           const Effect* effect = nullptr) {
+                           const Effect* effect = nullptr, int dashpot_stages = 1) {
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}/{}/{}", what, precision, name, nodes, springs).c_str(),
-            Measure<Real>, function, Case{nodes, springs, ground, effect}, *kernel);
+            Measure<Real>, function, Case{nodes, springs, ground, effect, dashpot_stages}, *kernel);
       };
       add("free", &Rope<Real>::Forward, false);
       add("forward", &Rope<Real>::Forward, true);
       add("gradient", &Rope<Real>::Gradient, true);
+      add("forward_stages4", &Rope<Real>::Forward, true, nullptr, 4);
+      add("gradient_stages4", &Rope<Real>::Gradient, true, nullptr, 4);
       for (const Effect* effect : EffectsAlongSprings()) {
         add("forward_" + effect->name(), &Rope<Real>::Forward, true, effect);
         add("gradient_" + effect->name(), &Rope<Real>::Gradient, true, effect);
