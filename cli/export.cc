@@ -80,7 +80,7 @@ void AddModelOptions(CLI::App* command, ExportOptions* options) {
       ->default_str("all");
   AddChoice(command, "--springs", &options->springs, kSpringWords,
             "what stands for the springs; auto: tendons, the plugin where they would leave out an "
-            "effect");
+            "effect or take over 4 times as many steps");
   AddChoice(
       command, "--controllers", &options->controllers, kControllerWords,
       "what holds the object; auto: slide where dashpots must feel its velocity; none: it is free");

@@ -20,6 +20,7 @@ namespace physpring {
 namespace {
 
 constexpr double kPluginTimestep = 2e-3;            // s
+constexpr double kMostTimesTheSubsteps = 4;         // of tendons, where nobody asked for them
 constexpr double kSlideLimit = 1.2360679774997898;  // sqrt(5) - 1, see below
 
 // Names that MuJoCo gives itself: its root body and its main default class.
@@ -48,15 +49,25 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
   return name;
 }
 
-SpringKind ChooseSprings(const Twin& twin, const SpringMassSystem& system, SpringKind asked) {
+// Tendons know no stages of dashpots: how many times as many sub-steps they need.
+double TimesTheSubsteps(const TwinLevel& level, double fps) {
+  TwinLevel of_tendons = level;
+  of_tendons.system.dashpot_stages = 1;
+  return static_cast<double>(ChooseSubsteps(of_tendons, fps, 0)) / ChooseSubsteps(level, fps, 0);
+}
+
+SpringKind ChooseSprings(const Twin& twin, const TwinLevel& level, SpringKind asked) {
   if (asked != SpringKind::kAuto) return asked;
+  const SpringMassSystem& system = level.system;
   if (!twin.late.empty() && system.controllers > 0) return SpringKind::kPlugin;
   const bool left_out = std::any_of(
       system.effects.begin(), system.effects.end(), [&system](const EffectValues& values) {
         return GetEffect(values.name).Mjcf(values.values, system).carrier ==
                EffectMjcf::Carrier::kPlugin;
       });
-  return left_out ? SpringKind::kPlugin : SpringKind::kTendon;
+  const bool dear =
+      system.dashpot_stages > 1 && TimesTheSubsteps(level, twin.fps) > kMostTimesTheSubsteps;
+  return left_out || dear ? SpringKind::kPlugin : SpringKind::kTendon;
 }
 
 ControllerKind ChooseControllers(const Twin& twin, SpringKind springs, ControllerKind asked) {
@@ -149,7 +160,7 @@ LevelPlan PlanLevel(const Twin& twin, int level, const ExportOptions& options) {
   plan.twin = &twin;
   plan.level = level;
   plan.name = ChooseName(twin, options);
-  plan.springs = ChooseSprings(twin, twin.levels[level].system, options.springs);
+  plan.springs = ChooseSprings(twin, twin.levels[level], options.springs);
   plan.controllers = ChooseControllers(twin, plan.springs, options.controllers);
   plan.contact = ChooseContact(plan.springs, options.contact);
   plan.flexes = options.flexes;
