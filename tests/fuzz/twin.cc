@@ -24,6 +24,7 @@ TwinLevel Row() {
   system.dashpot = Eigen::VectorXd::Constant(3, 0.1);
   system.contact_radius = Eigen::VectorXd::Constant(3, 0.005);
   level.substeps_per_second = 1000;
+  system.dashpot_stages = 3;
   return level;
 }
 
