@@ -49,11 +49,16 @@ std::string ChooseName(const Twin& twin, const ExportOptions& options) {
   return name;
 }
 
-// Tendons know no stages of dashpots: how many times as many sub-steps they need.
+// The level as MuJoCo's own springs step it: they know no stages of dashpots.
+TwinLevel WithoutStages(TwinLevel level) {
+  level.system.dashpot_stages = 1;
+  return level;
+}
+
+// How many times as many sub-steps tendons need.
 double TimesTheSubsteps(const TwinLevel& level, double fps) {
-  TwinLevel of_tendons = level;
-  of_tendons.system.dashpot_stages = 1;
-  return static_cast<double>(ChooseSubsteps(of_tendons, fps, 0)) / ChooseSubsteps(level, fps, 0);
+  return static_cast<double>(ChooseSubsteps(WithoutStages(level), fps, 0)) /
+         ChooseSubsteps(level, fps, 0);
 }
 
 SpringKind ChooseSprings(const Twin& twin, const TwinLevel& level, SpringKind asked) {
@@ -83,8 +88,8 @@ ContactKind ChooseContact(SpringKind springs, ContactKind asked) {
 }
 
 void ChooseTimesteps(const ExportOptions& options, LevelPlan* plan) {
-  TwinLevel level = plan->twin->levels[plan->level];
-  if (plan->springs != SpringKind::kPlugin) level.system.dashpot_stages = 1;  // MuJoCo's own
+  const TwinLevel& trained = plan->twin->levels[plan->level];
+  const TwinLevel level = plan->springs == SpringKind::kPlugin ? trained : WithoutStages(trained);
   plan->critical_timestep = ComputeStabilityBound(level.system).timestep;
   plan->substep = 1 / (plan->twin->fps * ChooseSubsteps(level, plan->twin->fps, 0));
   plan->largest_timestep = std::numeric_limits<double>::infinity();

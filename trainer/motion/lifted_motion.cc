@@ -67,11 +67,13 @@ LiftedMotion::Substeps LiftedMotion::SubstepsOf(const SpringMassSystem& system) 
   if (episodes_.empty()) return substeps;
   const int given = options_.rollout.substeps;
   if (given > 0) {
-    substeps.counts.assign(episodes_.size(), given);
+    // the longest sub-steps need the most stages
+    double least_fps = std::numeric_limits<double>::infinity();
     for (const Episode& episode : episodes_) {
-      const FrameCut cut = CutFrames(1 / episode.recording->fps, given, system);
-      substeps.dashpot_stages = std::max(substeps.dashpot_stages, cut.dashpot_stages);
+      least_fps = std::min(least_fps, episode.recording->fps);
     }
+    substeps.counts.assign(episodes_.size(), given);
+    substeps.dashpot_stages = CutFrames(1 / least_fps, given, system).dashpot_stages;
     return substeps;
   }
   const StabilityBound bound = ComputeStabilityBound(system);
