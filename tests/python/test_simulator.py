@@ -50,6 +50,9 @@ def test_goes_frame_by_frame(case):
 def test_gradient_matches_differences(case):
     simulator, path, start = case
     path = path[:12].copy()
+    # training may leave a spring without damping, where no difference can be taken to both sides
+    dashpot = np.maximum(simulator.parameters()['dashpot'], 1e-4)
+    simulator = simulator.with_parameters(dashpot=dashpot)
     random = np.random.default_rng(0)
     weights = random.normal(size=(2, 12, NODES, 3))
 
