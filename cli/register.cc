@@ -2,24 +2,36 @@
 // physpring register: clouds of points without names -> a recording of points that are followed.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/option_values.h"
 #include "cli/output_files.h"
+#include "cli/progress.h"
 #include "cli/warnings.h"
+#include "exporter/mesh_place.h"
+#include "exporter/mesh_samples.h"
+#include "registration/cloud_particles.h"
+#include "registration/refine_names.h"
 #include "registration/register_clouds.h"
 #include "registration/register_markers.h"
+#include "trainer/data/fit_data.h"
+#include "trainer/fits/train.h"
 #include "twin/error.h"
+#include "twin/predict.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
 
 struct RegisterArguments {
-  std::string recording, like, output;
-  int points = 0;
+  std::string recording, like, shape, output;
+  int points = 0, threads = AllCores();
+  bool refine = false;
   bool markers = false, rod = false;
   bool force = false;
 };
@@ -69,8 +81,59 @@ void RunMarkers(const RegisterArguments& arguments, const Recording& clouds) {
   WarnOfDoubts(registered);
 }
 
+RegisteredClouds OnShape(const RegisterArguments& arguments, const Recording& clouds) {
+  constexpr int kSamples = 16;  // of the mesh, by the points to make
+  ExpectSeen(clouds, 1);
+  const PlacedMesh placed = ReadMeshAt(arguments.shape, PointsOf(clouds.surface[0]));
+  PrintWarnings(placed.warnings);
+  const Points samples =
+      SampleSurface(placed.mesh, kSamples * std::max(arguments.points, kMostMadePoints));
+  return RegisterCloudsOn(clouds, samples, arguments.points);
+}
+
+RegisteredClouds RegisterAsAsked(const RegisterArguments& arguments, const Recording& clouds) {
+  if (!arguments.shape.empty()) return OnShape(arguments, clouds);
+  if (arguments.like.empty()) return RegisterClouds(clouds, arguments.points);
+  return RegisterCloudsLike(clouds, ReadRecording(arguments.like));
+}
+
+// The motion that a twin predicts which is fitted to the recording.
+std::vector<Points> FitAndPredictWith(const Recording& recording, int round, int threads,
+                                      Progress* progress) {
+  const double share = 1.0 / kMostNamingRounds;
+  Journal journal;
+  journal.progress = [&](double done, const std::string& status) {
+    StopIfRequested();
+    progress->Show((round + done) * share, fmt::format("fit {} to {} frames, {}", round + 1,
+                                                       recording.train_frames, status));
+  };
+  const FitData data = CollectFitData({{recording.name}}, {AsReadBack(recording)});
+  TrainOptions options;
+  options.threads = threads;
+  const Twin twin = Train(data, options, {}, Work(&journal, PieceKey("names")));
+  return Predict(twin, 0, ByClockOf(twin, data).recordings[0], {});
+}
+
+RegisteredClouds Refine(const RegisteredClouds& registered, int threads) {
+  Progress progress(0);
+  const RefinedNames refined = RefineNames(registered, [&](const Recording& recording, int round) {
+    return FitAndPredictWith(recording, round, threads, &progress);
+  });
+  const int frames = registered.recording.train_frames;
+  progress.Say(
+      fmt::format("named anew by {} {}; the last one explains {} of the {} frames that are "
+                  "for fitting",
+                  refined.fits, refined.fits == 1 ? "fit" : "fits", refined.explained, frames));
+  if (refined.explained < frames) {
+    PrintWarnings(
+        {fmt::format("from frame {} on no fit explains the clouds: names may be wrong there",
+                     refined.explained)});
+  }
+  return refined.registered;
+}
+
 void Run(const RegisterArguments& arguments) {
-  ExpectOutputs({arguments.output}, {arguments.recording, arguments.like});
+  ExpectOutputs({arguments.output}, {arguments.recording, arguments.like, arguments.shape});
   ExpectNew(arguments.output, arguments.force);
   const Recording clouds = ReadRecordingOrClouds(arguments.recording);
   if (clouds.point_count() > 0) {
@@ -79,9 +142,10 @@ void Run(const RegisterArguments& arguments) {
   }
   PrintRemarks({&clouds, 1});
   if (arguments.markers) return RunMarkers(arguments, clouds);
-  const RegisteredClouds registered =
-      arguments.like.empty() ? RegisterClouds(clouds, arguments.points)
-                             : RegisterCloudsLike(clouds, ReadRecording(arguments.like));
+  RegisteredClouds registered = RegisterAsAsked(arguments, clouds);
+  if (arguments.refine && !registered.lost) {
+    registered = UnlessStopped([&] { return Refine(registered, arguments.threads); });
+  }
   WriteRecording(registered.recording, arguments.output);
   fmt::print("{}: {} points, {:.1f} mm apart; clouds tell of {:.0f} % of them in a frame\n",
              arguments.output, registered.recording.point_count(), 1e3 * registered.fit.spacing,
@@ -115,10 +179,21 @@ void AddRegisterCommand(CLI::App& app) {
                    "take the points of this recording of the same object")
       ->excludes("--points")
       ->type_name("REC.npz");
+  command
+      ->add_option("--shape", arguments->shape,
+                   "surface of the whole object as it is in frame 0 (OBJ, PLY, STL, GLB), of which "
+                   "the clouds may show one side only; glTF is turned from y up to z up")
+      ->excludes("--like")
+      ->type_name("FILE");
+  CLI::Option* refine = command->add_flag(
+      "--refine", arguments->refine,
+      "fit twins to the points, and name them anew where those predict them; some minutes");
+  AddThreads(command, &arguments->threads, "of --refine; the result does not depend on it")
+      ->needs(refine);
   CLI::Option* markers = command->add_flag(
       "--markers", arguments->markers,
       "the points are markers, the same ones in each frame in any order; some may be hidden");
-  markers->excludes("--points")->excludes("--like");
+  markers->excludes("--points")->excludes("--like")->excludes("--shape")->excludes(refine);
   command->add_flag("--rod", arguments->rod, "the markers are along a rod: write their `order`")
       ->needs(markers);
   command->add_flag("--force", arguments->force, "overwrite a file");

@@ -4,13 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "registration/cloud_particles.h"
 #include "registration/followed_body.h"
-#include "tracker/soft_match.h"
-#include "tracker/track_recording.h"
 #include "twin/error.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
@@ -18,14 +15,12 @@
 namespace physpring {
 namespace {
 
-constexpr int kMostPoints = 400;
-constexpr double kPerSeen = 1.5;      // points, by the points of a cloud
-constexpr int kFewestSeen = 8;        // points of the first cloud
-constexpr double kRoughPart = 0.6;    // of the points, while the shape is hardly known
-constexpr int kFramesOfShape = 40;    // whose clouds are carried back
-constexpr int kMostPerPoint = 16;     // carried back, by the points of the rough body
-constexpr double kLost = 2.5;         // widths of a match, that clouds are from the points
-constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that is not lost
+constexpr double kPerSeen = 1.5;       // points, by the points of a cloud
+constexpr double kPerSeenOfShape = 3;  // the same where a cloud may show half of the object
+constexpr int kFewestSeen = 8;         // points of the first cloud
+constexpr double kRoughPart = 0.6;     // of the points, while the shape is hardly known
+constexpr int kFramesOfShape = 40;     // whose clouds are carried back
+constexpr int kMostPerPoint = 16;      // carried back, by the points of the rough body
 constexpr double kFarFromRough =
     1.5;  // spacings: what is carried back farther away is not the body
 
@@ -36,6 +31,17 @@ int PointsOfACloud(const std::vector<Points>& clouds) {
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());
   return *middle;
+}
+
+// As many as are asked for; 0: `per_seen` times those of a cloud, kMostMadePoints at most. Throws
+// Error where they make no body.
+int PointsToMake(const Recording& clouds, int points, double per_seen) {
+  ExpectSeen(clouds, kFewestSeen);
+  if (points == 0) {
+    points = std::min(kMostMadePoints, static_cast<int>(per_seen * PointsOfACloud(clouds.surface)));
+  }
+  ExpectEnough(clouds, points, kFewestSeen);
+  return points;
 }
 
 // The points of a cloud where they were in frame 0, if they moved along with the particles that are
@@ -68,31 +74,8 @@ Points ShapeOf(const Recording& rough, const std::vector<Points>& position) {
   return shape;
 }
 
-// What the clouds tell of the points in each frame after frame 0. Returns the part that they tell.
-double TellPoints(const std::vector<Points>& position, double width, Recording* recording) {
-  // as soft_match.h names it; the fewest points of a cloud that tell of a particle
-  constexpr double kNone = 0.05, kFewest = 0.3;
-  double seen = 0, all = 0;
-  for (std::size_t t = 1; t < position.size(); ++t) {
-    const SoftMatch match = MatchSoftly(position[t], recording->surface[t], width, kNone);
-    for (Eigen::Index i = 0; i < position[t].cols(); ++i) {
-      ++all;
-      if (match.count[i] < kFewest) continue;
-      ++seen;
-      recording->points[t].col(i) = match.target.col(i);
-    }
-  }
-  return seen / all;
-}
-
 RegisteredClouds Register(const Recording& recording) {
-  RegisteredClouds registered{recording};
-  const std::vector<Points> position = FollowClouds(recording);
-  registered.fit = FitOfClouds(position, recording);
-  const double width = MatchWidth(position[0]);
-  registered.seen = TellPoints(position, width, &registered.recording);
-  registered.lost = registered.fit.distance > kLost * width || registered.seen < kFewestTold;
-  return registered;
+  return TellPoints(recording, FollowClouds(recording));
 }
 
 }  // namespace
@@ -115,11 +98,7 @@ void ExpectEnough(const Recording& clouds, int points, int fewest) {
 }
 
 RegisteredClouds RegisterClouds(const Recording& clouds, int points) {
-  ExpectSeen(clouds, kFewestSeen);
-  if (points == 0) {
-    points = std::min(kMostPoints, static_cast<int>(kPerSeen * PointsOfACloud(clouds.surface)));
-  }
-  ExpectEnough(clouds, points, kFewestSeen);
+  points = PointsToMake(clouds, points, kPerSeen);
   const int few = std::max(kFewestSeen, static_cast<int>(kRoughPart * points));
   const Points first = PointsOf(clouds.surface[0]), kept = WithoutOutliers(first);
   const Recording rough = AtRestInFrame0(clouds, SpreadParticles(kept, few));
@@ -127,6 +106,11 @@ RegisteredClouds RegisterClouds(const Recording& clouds, int points) {
   RegisteredClouds registered = Register(AtRestInFrame0(clouds, SpreadParticles(shape, points)));
   registered.outliers = static_cast<int>(first.cols() - kept.cols());
   return registered;
+}
+
+RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points) {
+  points = PointsToMake(clouds, points, kPerSeenOfShape);
+  return Register(AtRestInFrame0(clouds, SpreadParticles(surface, points)));
 }
 
 RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known) {

@@ -4,23 +4,18 @@
 // Nothing is known of the body at first. So particles are spread over the first cloud and followed
 // (followed_body.h). Then the clouds of the first frames are carried back to frame 0, where
 // together they show the shape with less noise and fewer gaps. Particles are spread anew over that,
-// and followed again. If another recording of the object has points, they are the particles.
+// and followed again. If the shape is known, or another recording of the object has points, the
+// particles are of that.
 #ifndef PHYSPRING_REGISTRATION_REGISTER_CLOUDS_H_
 #define PHYSPRING_REGISTRATION_REGISTER_CLOUDS_H_
 
-#include "tracker/track_recording.h"
+#include "registration/told_points.h"
 #include "twin/recording.h"
 
 namespace physpring {
 
-struct RegisteredClouds {
-  // The clouds' recording with `points`, NaN where no point of the cloud tells of one.
-  Recording recording;
-  double seen = 0;    // the part of all points in all frames after frame 0 that clouds tell of
-  CloudFit fit;       // of the points where they are followed to
-  bool lost = false;  // the clouds are not where the points are, or tell of hardly any
-  int outliers = 0;   // points of the first cloud that were left out
-};
+// Made at most where nobody says how many.
+inline constexpr int kMostMadePoints = 400;
 
 // Throw Error unless frame 0 of the clouds shows as many points as `fewest`, or `points` are so
 // many.
@@ -31,6 +26,11 @@ void ExpectEnough(const Recording& clouds, int points, int fewest);
 // cloud has, 400 at most. Throws Error where frame 0 shows too little for a body, and where the
 // body diverges.
 RegisteredClouds RegisterClouds(const Recording& clouds, int points);
+
+// The same where the shape is known: `surface` are points all over the object as it is in frame 0,
+// 3 x any number, m. The particles are spread over them, also where no cloud shows any; 0: three
+// times as many as a cloud has.
+RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points);
 
 // The same with the points of `known`, another recording of the object without interior particles.
 RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known);

@@ -90,6 +90,10 @@ Recording ParseRecording(Npz arrays, const std::string& path);
 // Error for a recording that ReadRecording would refuse, and then writes nothing.
 void WriteRecording(const Recording& recording, const std::string& path);
 
+// `recording` as ReadRecording would give it back, had it been written: in float32, checked,
+// without outliers, with the start velocities that are worked out. Throws Error as that would.
+Recording AsReadBack(const Recording& recording);
+
 }  // namespace physpring
 
 #endif  // PHYSPRING_TWIN_RECORDING_H_

@@ -85,4 +85,8 @@ void WriteRecording(const Recording& recording, const std::string& path) {
   WriteNpz(arrays, path);
 }
 
+Recording AsReadBack(const Recording& recording) {
+  return ParseRecording(StoreRecording(recording), recording.name);
+}
+
 }  // namespace physpring

@@ -142,6 +142,27 @@ TEST(RegisterClouds, TakesThePointsOfAnotherRecording) {
   EXPECT_LT((like.recording.points[0] - placed).colwise().norm().mean(), 0.4 * kSpacing);
 }
 
+// The camera sees one half of the cloth only; its shape says that there is another one.
+TEST(RegisterClouds, SpreadsPointsOverAShapeThatIsKnown) {
+  const Recording truth = SwungCloth(false);
+  Recording clouds = CloudsOf(truth, 1);
+  Points surface = clouds.surface[0];
+  const double middle = surface.row(0).mean();
+  for (std::size_t t = 0; t < clouds.surface.size(); ++t) {
+    for (auto point : clouds.surface[t].colwise()) {
+      if (point[0] > middle) point.setConstant(std::nan(""));
+    }
+  }
+  const Recording half = RegisterClouds(clouds, 60).recording;
+  EXPECT_LT(half.points[0].row(0).maxCoeff(), middle + kSpacing);
+  const RegisteredClouds registered = RegisterCloudsOn(clouds, surface, 120);
+  ASSERT_EQ(registered.recording.point_count(), 120);
+  EXPECT_NEAR(registered.recording.points[0].row(0).maxCoeff(), surface.row(0).maxCoeff(),
+              kSpacing);
+  EXPECT_FALSE(registered.lost);
+  EXPECT_LT(OffTruth(registered.recording, truth), 0.4 * kSpacing);
+}
+
 // A few points that the camera saw elsewhere, in frame 0, are no part of the cloth.
 TEST(RegisterClouds, LeavesOutFarPointsOfTheFirstCloud) {
   const Recording truth = SwungCloth(false);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "registration/refine_names.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "twin/checks/motion_scale.h"
+#include "twin/neighbours.h"
+
+namespace physpring {
+namespace {
+
+// Times its usual distance from the prediction, that a cloud is in a frame that is not explained;
+// frames over which distances are averaged; and the fewest that a twin is fitted to.
+constexpr double kUnexplained = 1.12;
+constexpr int kAveraged = 5, kFewestFrames = 12;
+
+// Mean distance of the cloud's points in each frame for fitting to the nearest particle, m.
+std::vector<double> CloudDistances(const Recording& recording,
+                                   const std::vector<Points>& position) {
+  std::vector<double> distances;
+  for (int t = 0; t < recording.train_frames; ++t) {
+    const auto frame = static_cast<std::size_t>(t);
+    const NeighbourSearch search(position[frame]);
+    double sum = 0, count = 0;
+    for (const auto& point : recording.surface[frame].colwise()) {
+      if (!point.allFinite()) continue;
+      sum += search.Nearest(point, 1)[0].distance;
+      ++count;
+    }
+    distances.push_back(count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN());
+  }
+  return distances;
+}
+
+// Of those that are known, from `first` to before `end`; NaN if there is none.
+double MeanOf(const std::vector<double>& values, int first, int end) {
+  double sum = 0, count = 0;
+  for (int i = std::max(first, 0); i < std::min(end, static_cast<int>(values.size())); ++i) {
+    const double value = values[static_cast<std::size_t>(i)];
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return sum / count;
+}
+
+// How many frames are explained, of a prediction that was fitted to the first `fitted` ones. Its
+// first half is what is usual.
+int ExplainedFrames(const std::vector<double>& distances, int fitted) {
+  const int frames = static_cast<int>(distances.size());
+  std::vector<double> usual;
+  for (int t = 1; t < std::min(frames, std::max(kFewestFrames, fitted / 2)); ++t) {
+    const double distance = distances[static_cast<std::size_t>(t)];
+    if (!std::isnan(distance)) usual.push_back(distance);
+  }
+  if (usual.empty()) return frames;
+  const double most = kUnexplained * Median(std::move(usual));
+  for (int t = 1; t < frames; ++t) {
+    const int before = kAveraged / 2;
+    if (MeanOf(distances, std::max(1, t - before), t + before + 1) > most) {
+      return std::max(t, kFewestFrames);
+    }
+  }
+  return frames;
+}
+
+}  // namespace
+
+RefinedNames RefineNames(const RegisteredClouds& first, const FitAndPredict& fit) {
+  const int all = first.recording.train_frames;
+  RefinedNames refined{first};
+  Recording named = first.recording;
+  double least = std::numeric_limits<double>::infinity();
+  for (int explained = all; refined.fits < kMostNamingRounds && refined.explained < all;) {
+    Recording part = named;
+    part.train_frames = explained;
+    const std::vector<Points> position = fit(part, refined.fits++);
+    const std::vector<double> distances = CloudDistances(named, position);
+    explained = refined.explained = ExplainedFrames(distances, explained);
+    const RegisteredClouds told = TellPoints(named, position);
+    named = told.recording;
+    if (const double distance = MeanOf(distances, 1, all); distance < least) {
+      least = distance;
+      refined.registered = told;
+    }
+  }
+  refined.registered.outliers = first.outliers;
+  return refined;
+}
+
+}  // namespace physpring
