@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Twins from clouds of a recording, against twins from its points: clouds_without_names.py OUTPUT RECORDING...
+"""Twins from clouds of a recording, against twins from its points.
 
 The names of the points are thrown away. Each frame's cloud is 60 % of them, drawn anew, with 2 mm of
 noise; with --one-side only of those that a camera at one side sees (hidden point removal, Katz et al.
-2007). `physpring register` makes points of the clouds, `physpring train` twins of both. The blind
-predictions are judged at the recording's own points, which are carried along by the eight nearest
-particles, as a rigid body.
+2007). `physpring register` makes points of the clouds, `physpring train` twins of both. With --known
+the places of all points in frame 0 are known, as from a scan, and the particles are there
+(`register --like`); else they are spread over the first cloud. The blind predictions are judged at the
+recording's own points, which are carried along by the eight nearest particles, as a rigid body; with
+--known they are those particles.
 
 What is there already is not made again. Needs numpy and scipy.
 """
@@ -19,6 +21,7 @@ from one_camera import ROOT, carried, run
 from scipy.spatial import ConvexHull
 
 KEPT, NOISE = 0.6, 2e-3  # part of the points, m
+THERE = 3e-3  # a particle so near a point in frame 0 is that point, m
 EYE = np.array([-0.4, -0.9, 0.5])  # where the camera is, seen from the object; any length
 DISTANCE, FLIP = 1.5, 30.0  # of the camera, m; radius of the flipping sphere in distances
 
@@ -51,6 +54,22 @@ def clouds(recording, one_side):
     return cloud
 
 
+def first_frame(names):
+    """A recording of frame 0 alone, twice."""
+    kept = {key: value for key, value in names.items()
+            if key in ('fps', 'mass', 'gravity', 'ground')}
+    return {**kept, **{key: np.repeat(names[key][:1], 2, axis=0)
+                       for key in ('points', 'controllers')}}
+
+
+def moved_as(places, motion):
+    """Where places (n, 3) of frame 0 are moved to: by the particle there, or by those near it."""
+    gaps = np.linalg.norm(places[:, None] - motion[0], axis=2)
+    if gaps.min(axis=1).max() < THERE:
+        return motion[:, gaps.argmin(axis=1)]
+    return carried(places, motion[0], motion)
+
+
 def errors(program, twin, recording, names):
     """Mean distances in the fit frames and in later ones, mm, a row for each level."""
     path = twin.with_suffix('.motion.npz')
@@ -63,7 +82,7 @@ def errors(program, twin, recording, names):
             return found
         moved = motion[f'level{level}/points'].astype(float)
         at_start = np.isfinite(points[0]).all(axis=1)
-        apart = carried(points[0][at_start], moved[0], moved) - points[:, at_start]
+        apart = moved_as(points[0][at_start], moved) - points[:, at_start]
         apart = np.nanmean(np.linalg.norm(apart, axis=2), axis=1)
         found.append((1e3 * apart[:fit].mean(), 1e3 * apart[fit:].mean()))
 
@@ -74,6 +93,8 @@ def main():
     parser.add_argument('recordings', nargs='+', type=pathlib.Path)
     parser.add_argument('--physpring', default=ROOT / 'build/release/physpring')
     parser.add_argument('--one-side', action='store_true', help='the clouds show one side only')
+    parser.add_argument('--known', action='store_true', help='all points are known in frame 0')
+    parser.add_argument('--refine', action='store_true', help='as of physpring register')
     parser.add_argument('--levels', default='1')
     options = parser.parse_args()
     print('| recording | level | fit frames, mm | later frames, mm |\n|---|---|---|---|')
@@ -85,15 +106,21 @@ def main():
         if not named.exists():
             np.savez(named, **names)
         if not registered.exists():
-            others = {key: value for key, value in names.items() if key not in ('points', 'interior', 'track')}
+            others = {key: value for key, value in names.items()
+                      if key not in ('points', 'interior', 'track')}
             np.savez(folder / 'clouds.npz', surface=clouds(names, options.one_side), **others)
-            run(options.physpring, 'register', folder / 'clouds.npz', '-o', registered)
+            how = ['--refine'] if options.refine else []
+            if options.known:
+                np.savez(folder / 'shape.npz', **first_frame(names))
+                how += ['--like', folder / 'shape.npz']
+            run(options.physpring, 'register', folder / 'clouds.npz', *how, '-o', registered)
         for recording in (named, registered):
             twin = recording.with_suffix('.twin.npz')
             if not twin.exists():
                 run(options.physpring, 'train', recording, '-o', twin, '--levels', options.levels)
             for level, (fit, later) in enumerate(errors(options.physpring, twin, recording, names)):
-                print(f'| {source.stem}, {recording.stem} | {level} | {fit:.2f} | {later:.2f} |', flush=True)
+                print(f'| {source.stem}, {recording.stem} | {level} | {fit:.2f} | {later:.2f} |',
+                      flush=True)
 
 
 if __name__ == '__main__':

@@ -202,7 +202,7 @@ TEST_P(DemoScene, IsRecorded) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DemoScene,
-                         testing::Values(Demo{"rope", 108, 0, 4, false},
+                         testing::Values(Demo{"rope", 76, 0, 4, false},
                                          Demo{"cloth", 219, 0, 6, false},
                                          Demo{"block", 164, 72, 4, false},
                                          Demo{"cord", 20, 0, 1, true}),
