@@ -74,7 +74,9 @@ double Fitting::difference() const { return FactorDifference(*recordings_[0].rec
 
 double Fitting::MostRate(std::size_t body) const {
   if (bodies_[body].kind == DiagnosisBody::Kind::kOpen) return kMostCommonRate;
-  const double own = DiagnosisRate(bodies_[body].base, recordings_[0].recording->fps);
+  const SpringMassSystem& base = bodies_[body].base;
+  const double own =
+      DiagnosisRate(base, recordings_[0].recording->fps) * CostOf(base.dashpot_stages);
   return std::max(kMostCommonRate, kTrainedRoom * own);
 }
 

@@ -109,5 +109,16 @@ TEST(Fitting, ABodyThatIsTrustedMayBeAsStiffAsItCame) {
       stiff.dashpot);
 }
 
+// Stages make its sub-steps cost more than those of other bodies may.
+TEST(Fitting, ABodyThatIsTrustedMayTakeTheStagesThatItCameWith) {
+  const Recording recording = SofterRope();
+  SpringMassSystem lossy = MakeStartSystem(recording, {});
+  lossy.dashpot_stages = 6;
+  while (DiagnosisRate(lossy, recording.fps) < 2500) lossy.dashpot *= 1.5;
+  const Fitting fitting({{lossy, true, DiagnosisBody::Kind::kTrusted, "rope"}},
+                        {HoldOutFrames(recording)}, 1);
+  EXPECT_TRUE(std::isfinite(fitting.Begin(0, {}).misfit));
+}
+
 }  // namespace
 }  // namespace physpring
