@@ -11,9 +11,9 @@
 namespace physpring {
 namespace {
 
-// Times its usual distance from the prediction, that a cloud is in a frame that is not explained;
+// By which a prediction may be off, in the particles' spacing, and still tell which is which;
 // frames over which distances are averaged; and the fewest that a twin is fitted to.
-constexpr double kUnexplained = 1.12;
+constexpr double kMostOff = 0.2;
 constexpr int kAveraged = 5, kFewestFrames = 12;
 
 // Mean distance of the cloud's points in each frame for fitting to the nearest particle, m.
@@ -46,9 +46,10 @@ double MeanOf(const std::vector<double>& values, int first, int end) {
   return sum / count;
 }
 
-// How many frames are explained, of a prediction that was fitted to the first `fitted` ones. Its
-// first half is what is usual.
-int ExplainedFrames(const std::vector<double>& distances, int fitted) {
+// How many frames are explained, of a prediction that was fitted to the first `fitted` ones. Their
+// first half is what is usual: the noise, and how far apart the particles are. An error of the
+// prediction adds to it in squares.
+int ExplainedFrames(const std::vector<double>& distances, int fitted, double spacing) {
   const int frames = static_cast<int>(distances.size());
   std::vector<double> usual;
   for (int t = 1; t < std::min(frames, std::max(kFewestFrames, fitted / 2)); ++t) {
@@ -56,7 +57,7 @@ int ExplainedFrames(const std::vector<double>& distances, int fitted) {
     if (!std::isnan(distance)) usual.push_back(distance);
   }
   if (usual.empty()) return frames;
-  const double most = kUnexplained * Median(std::move(usual));
+  const double most = std::hypot(Median(std::move(usual)), kMostOff * spacing);
   for (int t = 1; t < frames; ++t) {
     const int before = kAveraged / 2;
     if (MeanOf(distances, std::max(1, t - before), t + before + 1) > most) {
@@ -78,7 +79,8 @@ RefinedNames RefineNames(const RegisteredClouds& first, const FitAndPredict& fit
     part.train_frames = explained;
     const std::vector<Points> position = fit(part, refined.fits++);
     const std::vector<double> distances = CloudDistances(named, position);
-    explained = refined.explained = ExplainedFrames(distances, explained);
+    explained = refined.explained =
+        ExplainedFrames(distances, explained, MedianSpacing(position[0]));
     const RegisteredClouds told = TellPoints(named, position);
     named = told.recording;
     if (const double distance = MeanOf(distances, 1, all); distance < least) {

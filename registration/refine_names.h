@@ -5,7 +5,7 @@
 //   1. A twin is fitted to the first frames, as far as they are explained: at first to all that are
 //      for fitting.
 //   2. The frames are explained up to the first one in which the cloud is farther from the
-//      prediction than usual.
+//      prediction than usual, by more than a fifth of the particles' distance.
 //   3. The clouds tell the points anew, near where they are predicted (told_points.h).
 // It ends when all frames for fitting are explained.
 #ifndef PHYSPRING_REGISTRATION_REFINE_NAMES_H_

@@ -33,7 +33,7 @@ std::vector<Points> Rows() {
 std::vector<Points> RightUntil(int until) {
   std::vector<Points> rows = Rows();
   for (int t = until; t < kFrames; ++t) {
-    rows[static_cast<std::size_t>(t)].row(1).array() += 1e-3 * (t - until + 1);
+    rows[static_cast<std::size_t>(t)].row(1).array() += 5e-3 * (t - until + 1);
   }
   return rows;
 }

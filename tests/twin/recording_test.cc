@@ -48,6 +48,19 @@ TEST_F(RecordingFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.start, start);
 }
 
+TEST_F(RecordingFile, IsReadBackWithoutAFile) {
+  Recording made = MakeRecording();
+  made.name = "rope";
+  const Recording expected = ReadRecording(path_), back = AsReadBack(made);
+  EXPECT_EQ(back.name, expected.name);
+  EXPECT_EQ(back.hash, "");
+  ExpectEqual(back.points, expected.points);
+  ExpectEqual(back.surface, expected.surface);
+  EXPECT_EQ(back.start, expected.start);
+  EXPECT_EQ(back.velocity, expected.velocity);
+  EXPECT_EQ(back.train_frames, expected.train_frames);
+}
+
 TEST_F(RecordingFile, NeedsOnlyPointsControllersAndFps) {
   std::erase_if(arrays_, [](const auto& entry) {
     return entry.first != "points" && entry.first != "controllers" && entry.first != "fps";
