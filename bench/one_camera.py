@@ -26,7 +26,6 @@ WIDTH, HEIGHT, FIELD_OF_VIEW = 640, 480, 45.0  # pixels, degrees
 DISTANCE, ELEVATION = 1.15, 20.0  # of the camera, m and degrees
 AZIMUTH = {'rope': -60.0, 'cloth': -35.0}  # where it stands, degrees
 PIXEL_NOISE, POINT_NOISE = 0.3, 1e-3  # pixels, m
-SKIN = 1e-3  # from the vertices to the surface that is filmed, m: tracks are of points on it
 BEHIND = 5e-3  # a vertex so far behind what the camera sees is hidden, m
 NEAREST = 8
 
@@ -38,7 +37,6 @@ class Film:
         self.model = mujoco.MjModel.from_xml_path(str(ROOT / f'models/demo/{name}.xml'))
         self.model.vis.global_.offwidth, self.model.vis.global_.offheight = WIDTH, HEIGHT
         self.model.vis.global_.fovy = FIELD_OF_VIEW
-        self.model.flex_radius[:] = SKIN
         self.data = mujoco.MjData(self.model)
         mujoco.mj_forward(self.model, self.data)
         at_rest = self.data.flexvert_xpos.copy()
