@@ -21,7 +21,6 @@ from one_camera import ROOT, carried, run
 from scipy.spatial import ConvexHull
 
 KEPT, NOISE = 0.6, 2e-3  # part of the points, m
-THERE = 3e-3  # a particle so near a point in frame 0 is that point, m
 EYE = np.array([-0.4, -0.9, 0.5])  # where the camera is, seen from the object; any length
 DISTANCE, FLIP = 1.5, 30.0  # of the camera, m; radius of the flipping sphere in distances
 
@@ -62,15 +61,15 @@ def first_frame(names):
                        for key in ('points', 'controllers')}}
 
 
-def moved_as(places, motion):
+def moved_as(places, motion, known):
     """Where places (n, 3) of frame 0 are moved to: by the particle there, or by those near it."""
-    gaps = np.linalg.norm(places[:, None] - motion[0], axis=2)
-    if gaps.min(axis=1).max() < THERE:
-        return motion[:, gaps.argmin(axis=1)]
+    nearest = np.linalg.norm(places[:, None] - motion[0], axis=2).argmin(axis=1)
+    if known and len(set(nearest)) == len(places):
+        return motion[:, nearest]
     return carried(places, motion[0], motion)
 
 
-def errors(program, twin, recording, names):
+def errors(program, twin, recording, names, known):
     """Mean distances in the fit frames and in later ones, mm, a row for each level."""
     path = twin.with_suffix('.motion.npz')
     run(program, 'eval', twin, recording, '--trajectory', path)
@@ -82,7 +81,7 @@ def errors(program, twin, recording, names):
             return found
         moved = motion[f'level{level}/points'].astype(float)
         at_start = np.isfinite(points[0]).all(axis=1)
-        apart = moved_as(points[0][at_start], moved) - points[:, at_start]
+        apart = moved_as(points[0][at_start], moved, known) - points[:, at_start]
         apart = np.nanmean(np.linalg.norm(apart, axis=2), axis=1)
         found.append((1e3 * apart[:fit].mean(), 1e3 * apart[fit:].mean()))
 
@@ -118,7 +117,9 @@ def main():
             twin = recording.with_suffix('.twin.npz')
             if not twin.exists():
                 run(options.physpring, 'train', recording, '-o', twin, '--levels', options.levels)
-            for level, (fit, later) in enumerate(errors(options.physpring, twin, recording, names)):
+            for level, (fit, later) in enumerate(errors(
+                    options.physpring, twin, recording, names,
+                    options.known or recording == named)):
                 print(f'| {source.stem}, {recording.stem} | {level} | {fit:.2f} | {later:.2f} |',
                       flush=True)
 
