@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
-#include "twin/checks/motion_scale.h"
 #include "twin/neighbours.h"
 
 namespace physpring {
@@ -46,23 +46,25 @@ double MeanOf(const std::vector<double>& values, int first, int end) {
   return sum / count;
 }
 
-// How many frames are explained, of a prediction that was fitted to the first `fitted` ones. Their
-// first half is what is usual: the noise, and how far apart the particles are. An error of the
-// prediction adds to it in squares.
+// How many frames are explained, of a prediction that was fitted to the first `fitted` ones. Usual
+// is the noise, and how far apart the particles are: the lower quartile of those frames, since in
+// some of them the prediction may be off, which adds to it in squares.
 int ExplainedFrames(const std::vector<double>& distances, int fitted, double spacing) {
-  const int frames = static_cast<int>(distances.size());
+  const int frames = static_cast<int>(distances.size()), before = kAveraged / 2;
+  std::vector<double> averages;
+  for (int t = 1; t < frames; ++t) {
+    averages.push_back(MeanOf(distances, std::max(1, t - before), t + before + 1));
+  }
   std::vector<double> usual;
-  for (int t = 1; t < std::min(frames, std::max(kFewestFrames, fitted / 2)); ++t) {
-    const double distance = distances[static_cast<std::size_t>(t)];
-    if (!std::isnan(distance)) usual.push_back(distance);
+  for (double average : std::span(averages).first(static_cast<std::size_t>(fitted) - 1)) {
+    if (!std::isnan(average)) usual.push_back(average);
   }
   if (usual.empty()) return frames;
-  const double most = std::hypot(Median(std::move(usual)), kMostOff * spacing);
+  const auto quartile = usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 4);
+  std::nth_element(usual.begin(), quartile, usual.end());
+  const double most = std::hypot(*quartile, kMostOff * spacing);
   for (int t = 1; t < frames; ++t) {
-    const int before = kAveraged / 2;
-    if (MeanOf(distances, std::max(1, t - before), t + before + 1) > most) {
-      return std::max(t, kFewestFrames);
-    }
+    if (averages[static_cast<std::size_t>(t) - 1] > most) return std::max(t, kFewestFrames);
   }
   return frames;
 }

@@ -28,7 +28,7 @@ class Register : public testing::Test {
       for (std::size_t i = order.size(); i > 1; --i) {
         std::swap(order[i - 1], order[static_cast<std::size_t>(Uniform(&random) * i)]);
       }
-      recording.surface.push_back(points(Eigen::all, order));
+      recording.surface.emplace_back(points(Eigen::all, order));
     }
     for (Points& frame : recording.points) frame.resize(3, 0);
     recording.velocity.resize(3, 0);
@@ -77,7 +77,10 @@ TEST_F(Register, SpreadsPointsOverAMesh) {
   sheet.train_frames = 20;
   for (int t = 0; t < 20; ++t) {
     Points seen(3, 66), hands(3, 2);
-    for (int i = 0; i < 66; ++i) seen.col(i) << 0.01 * (i % 6), 0.01 * (i / 6), 2e-3 * t;
+    for (int i = 0; i < 66; ++i) {
+      const int row = i / 6;
+      seen.col(i) << 0.01 * (i % 6), 0.01 * row, 2e-3 * t;
+    }
     hands << 0.1, 0.1, 0, 0.1, 2e-3 * t, 2e-3 * t;
     sheet.points.push_back(seen);
     sheet.controllers.push_back(hands);

@@ -148,8 +148,8 @@ TEST(RegisterClouds, SpreadsPointsOverAShapeThatIsKnown) {
   Recording clouds = CloudsOf(truth, 1);
   Points surface = clouds.surface[0];
   const double middle = surface.row(0).mean();
-  for (std::size_t t = 0; t < clouds.surface.size(); ++t) {
-    for (auto point : clouds.surface[t].colwise()) {
+  for (Points& cloud : clouds.surface) {
+    for (auto point : cloud.colwise()) {
       if (point[0] > middle) point.setConstant(std::nan(""));
     }
   }
