@@ -13,6 +13,7 @@ recording's own points, which are carried along by the eight nearest particles, 
 What is there already is not made again. Needs numpy and scipy.
 """
 import argparse
+import itertools
 import pathlib
 import sys
 
@@ -76,7 +77,7 @@ def errors(program, twin, recording, names, known):
     motion, points = np.load(path), names['points'].astype(float)
     fit = int(names['train_frames']) if 'train_frames' in names else int(0.7 * len(points))
     found = []
-    for level in range(99):
+    for level in itertools.count():
         if f'level{level}/points' not in motion:
             return found
         moved = motion[f'level{level}/points'].astype(float)
@@ -101,9 +102,7 @@ def main():
         names = dict(np.load(source))
         folder = options.output / source.stem
         folder.mkdir(parents=True, exist_ok=True)
-        named, registered = folder / 'named.npz', folder / 'registered.npz'
-        if not named.exists():
-            np.savez(named, **names)
+        registered = folder / 'registered.npz'
         if not registered.exists():
             others = {key: value for key, value in names.items()
                       if key not in ('points', 'interior', 'track')}
@@ -113,14 +112,14 @@ def main():
                 np.savez(folder / 'shape.npz', **first_frame(names))
                 how += ['--like', folder / 'shape.npz']
             run(options.physpring, 'register', folder / 'clouds.npz', *how, '-o', registered)
-        for recording in (named, registered):
-            twin = recording.with_suffix('.twin.npz')
+        for recording, name in ((source, 'named'), (registered, 'registered')):
+            twin = folder / f'{name}.twin.npz'
             if not twin.exists():
                 run(options.physpring, 'train', recording, '-o', twin, '--levels', options.levels)
             for level, (fit, later) in enumerate(errors(
                     options.physpring, twin, recording, names,
-                    options.known or recording == named)):
-                print(f'| {source.stem}, {recording.stem} | {level} | {fit:.2f} | {later:.2f} |',
+                    options.known or recording == source)):
+                print(f'| {source.stem}, {name} | {level} | {fit:.2f} | {later:.2f} |',
                       flush=True)
 
 

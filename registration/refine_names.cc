@@ -6,6 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "tracker/track_recording.h"
+#include "trainer/motion/track_error.h"
 #include "twin/neighbours.h"
 
 namespace physpring {
@@ -16,20 +18,14 @@ namespace {
 constexpr double kMostOff = 0.2;
 constexpr int kAveraged = 5, kFewestFrames = 12;
 
-// Mean distance of the cloud's points in each frame for fitting to the nearest particle, m.
+// Mean distance of the cloud's points in each frame for fitting to the nearest particle, m; NaN
+// where there are none.
 std::vector<double> CloudDistances(const Recording& recording,
                                    const std::vector<Points>& position) {
   std::vector<double> distances;
   for (int t = 0; t < recording.train_frames; ++t) {
     const auto frame = static_cast<std::size_t>(t);
-    const NeighbourSearch search(position[frame]);
-    double sum = 0, count = 0;
-    for (const auto& point : recording.surface[frame].colwise()) {
-      if (!point.allFinite()) continue;
-      sum += search.Nearest(point, 1)[0].distance;
-      ++count;
-    }
-    distances.push_back(count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN());
+    distances.push_back(Mean(DistancesToNearest(position[frame], recording.surface[frame])));
   }
   return distances;
 }
@@ -37,7 +33,7 @@ std::vector<double> CloudDistances(const Recording& recording,
 // Of those that are known, from `first` to before `end`; NaN if there is none.
 double MeanOf(const std::vector<double>& values, int first, int end) {
   double sum = 0, count = 0;
-  for (int i = std::max(first, 0); i < std::min(end, static_cast<int>(values.size())); ++i) {
+  for (int i = first; i < std::min(end, static_cast<int>(values.size())); ++i) {
     const double value = values[static_cast<std::size_t>(i)];
     if (std::isnan(value)) continue;
     sum += value;
@@ -64,7 +60,7 @@ int ExplainedFrames(const std::vector<double>& distances, int fitted, double spa
   std::nth_element(usual.begin(), quartile, usual.end());
   const double most = std::hypot(*quartile, kMostOff * spacing);
   for (int t = 1; t < frames; ++t) {
-    if (averages[static_cast<std::size_t>(t) - 1] > most) return std::max(t, kFewestFrames);
+    if (averages[static_cast<std::size_t>(t) - 1] > most) return t;
   }
   return frames;
 }
@@ -76,13 +72,13 @@ RefinedNames RefineNames(const RegisteredClouds& first, const FitAndPredict& fit
   RefinedNames refined{first};
   Recording named = first.recording;
   double least = std::numeric_limits<double>::infinity();
-  for (int explained = all; refined.fits < kMostNamingRounds && refined.explained < all;) {
+  for (int fitted = all; refined.fits < kMostNamingRounds && refined.explained < all;) {
     Recording part = named;
-    part.train_frames = explained;
+    part.train_frames = fitted;
     const std::vector<Points> position = fit(part, refined.fits++);
     const std::vector<double> distances = CloudDistances(named, position);
-    explained = refined.explained =
-        ExplainedFrames(distances, explained, MedianSpacing(position[0]));
+    refined.explained = ExplainedFrames(distances, fitted, MedianSpacing(position[0]));
+    fitted = std::max(refined.explained, std::min(kFewestFrames, all));
     const RegisteredClouds told = TellPoints(named, position);
     named = told.recording;
     if (const double distance = MeanOf(distances, 1, all); distance < least) {

@@ -135,16 +135,23 @@ void ExpectSomethingToFollow(const Recording& recording, const TrackOptions& opt
 
 }  // namespace
 
+std::vector<double> DistancesToNearest(const Points& nodes, const Points& cloud) {
+  const NeighbourSearch search(nodes);
+  std::vector<double> distances;
+  for (const auto& point : cloud.colwise()) {
+    if (point.allFinite()) distances.push_back(search.Nearest(point, 1)[0].distance);
+  }
+  return distances;
+}
+
 CloudFit FitOfClouds(const std::vector<Points>& position, const Recording& recording) {
   const std::size_t frames = position.size();
   const std::size_t last_second =
       std::min(frames - 1, static_cast<std::size_t>(std::ceil(recording.fps)));
   double sum = 0, count = 0;
   for (std::size_t t = frames - last_second; t < frames; ++t) {
-    const NeighbourSearch search(position[t]);
-    for (const auto& point : recording.surface[t].colwise()) {
-      if (!point.allFinite()) continue;
-      sum += search.Nearest(point, 1)[0].distance;
+    for (double distance : DistancesToNearest(position[t], recording.surface[t])) {
+      sum += distance;
       ++count;
     }
   }

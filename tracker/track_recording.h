@@ -41,6 +41,10 @@ struct TrackedMotion {
   double frames_per_second = 0;  // of processor time, by one thread
 };
 
+// How far each point of a cloud is from the nearest of `nodes` (3 x nodes), m; columns of NaN are
+// no points.
+std::vector<double> DistancesToNearest(const Points& nodes, const Points& cloud);
+
 // Of particles that are at `position`, T frames of 3 x particles, m, in the recording's clouds.
 CloudFit FitOfClouds(const std::vector<Points>& position, const Recording& recording);
 

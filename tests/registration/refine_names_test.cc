@@ -69,6 +69,17 @@ TEST(RefineNames, EndsWhenAllFramesAreExplained) {
   EXPECT_NEAR(fitted[2], 35, 3);
 }
 
+// Fewer frames than tell of a body are not fitted, though fewer may be explained.
+TEST(RefineNames, FitsNoFewerFramesThanTellOfABody) {
+  int fitted = 0;
+  const RefinedNames refined = RefineNames(Registered(), [&](const Recording& recording, int) {
+    fitted = recording.train_frames;
+    return RightUntil(4);
+  });
+  EXPECT_EQ(fitted, 12);
+  EXPECT_LT(refined.explained, 7);
+}
+
 // What the clouds tell is near the prediction, and frame 0 stays as it was.
 TEST(RefineNames, TellsPointsWhereTheyArePredicted) {
   RegisteredClouds wrong = Registered();
