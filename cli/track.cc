@@ -14,7 +14,6 @@
 #include "cli/warnings.h"
 #include "jobs/tracking.h"
 #include "tracker/track_recording.h"
-#include "twin/clock_offset.h"
 #include "twin/npz_fields.h"
 #include "twin/predict.h"
 #include "twin/regrasp.h"
@@ -35,8 +34,14 @@ void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
   const auto print = [](const char* what, double metres) {
     if (std::isfinite(metres)) fmt::print("  {:<42} {:>8.2f} mm\n", what, 1e3 * metres);
   };
+  if (arguments.options.cloud) {
+    fmt::print("clouds are {:.1f} mm from the nearest particles, mean of the last second\n",
+               1e3 * motion.cloud.distance);
+  }
   if (motion.hidden.empty()) {
-    fmt::print("no point was hidden, so nothing tells how good this is (--hide)\n");
+    fmt::print("no point was {}\n", arguments.options.cloud
+                                        ? "measured, so only the clouds tell how good this is"
+                                        : "hidden, so nothing tells how good this is (--hide)");
     return;
   }
   fmt::print("mean distance of {} points that were {}:\n", motion.hidden.size(),
@@ -51,7 +56,8 @@ void Run(const TrackArguments& arguments) {
   ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
   ExpectNew(arguments.output, arguments.force);
   const Twin trained = ReadTwin(arguments.twin);
-  Recording recording = ReadRecordingFor(trained, arguments.recording);
+  Recording recording =
+      RecordingToTrack(trained, ReadRecordingOrClouds(arguments.recording), arguments.options);
   ExpectSameObject(trained, recording);
   const Twin twin = HeldAsIn(&recording, trained);
   PrintRemarks({&recording, 1});

@@ -3,7 +3,20 @@
 
 #include <fmt/format.h>
 
+#include "registration/placed_twin.h"
+#include "twin/clock_offset.h"
+#include "twin/error.h"
+
 namespace physpring {
+
+Recording RecordingToTrack(const Twin& twin, Recording recording, const TrackOptions& options) {
+  UseClockOf(twin, &recording);
+  if (recording.point_count() > 0) return recording;
+  if (options.cloud) return PlaceTwin(twin, recording);
+  throw Error(
+      fmt::format("recording {}: has clouds ('surface') and no 'points'; --cloud follows them",
+                  recording.name));
+}
 
 std::vector<std::string> WarningsOf(const TrackedMotion& motion) {
   constexpr double kWorse = 1.1;

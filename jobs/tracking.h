@@ -6,8 +6,15 @@
 #include <vector>
 
 #include "tracker/track_recording.h"
+#include "twin/recording.h"
+#include "twin/twin.h"
 
 namespace physpring {
+
+// A recording that was read, as it is tracked: by the twin's clock; where it has clouds alone, the
+// twin is placed in the first one (registration/placed_twin.h). Throws Error as that does, and for
+// clouds alone that are not to be followed.
+Recording RecordingToTrack(const Twin& twin, Recording recording, const TrackOptions& options);
 
 // A twin that tracks worse than what needs no measurement, or no twin, is of no use; nor is one
 // that is not where the cloud is.

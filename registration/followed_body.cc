@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tracker/tracker_bank.h"
 #include "trainer/bodies/start_system.h"
@@ -15,12 +16,70 @@
 #include "twin/recorded_input.h"
 #include "twin/rotation.h"
 #include "twin/stability.h"
+#include "twin/stop_request.h"
 
 namespace physpring {
 namespace {
 
-// A frame. Fewer make a body that sags, more one that rings (docs/decisions/127).
-constexpr int kSubsteps = 40;
+// A frame, at first. Fewer make a body that sags, more one that rings (docs/decisions/127).
+constexpr int kSubsteps = 40, kMostSubsteps = 300;
+constexpr double kStiffer = 1.5;  // each further body, in sub-steps
+// A body that becomes longer than this is too soft, unless a stiffer one does so, too: then it is
+// the object that stretches.
+constexpr double kMostStretch = 0.01, kStretchesToo = 0.9;
+
+struct FollowedMotion {
+  std::vector<Points> position;  // T frames of 3 x particles, m
+  double stretch = 0;            // exceeded in a tenth of the frames
+};
+
+// By which the body's springs are longer than in the beginning, on average. Those that bending
+// makes longer and shorter cancel.
+double StretchOf(const SpringMassSystem& system, const Points& position) {
+  double longer = 0, all = 0;
+  for (int e = 0; e < system.spring_count(); ++e) {
+    if (system.IsControllerSpring(e)) continue;
+    const auto [a, b] = system.springs[static_cast<std::size_t>(e)];
+    const double rest = system.rest_length[e], stiffness = system.stiffness[e];
+    longer += stiffness * rest * ((position.col(a) - position.col(b)).norm() - rest);
+    all += stiffness * rest * rest;
+  }
+  return all > 0 ? longer / all : 0;
+}
+
+double UsualMost(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto tenth = values.begin() + static_cast<std::ptrdiff_t>(9 * values.size() / 10);
+  std::nth_element(values.begin(), tenth, values.end());
+  return *tenth;
+}
+
+// By a body that is as stiff as so many sub-steps a frame bear.
+FollowedMotion FollowWith(const Recording& recording, int substeps) {
+  SpringMassSystem system = MakeStartSystem(recording, {});
+  ScaleToSubsteps(1 / recording.fps, substeps, kStepSafety, &system);
+  const Points start = recording.start.leftCols(recording.particle_count());
+  TrackerBank tracker(system, EnvironmentOf(recording),
+                      {1 / recording.fps, substeps, true, LateGraspsOf(recording)},
+                      MatchWidth(start), start, recording.velocity);
+  FrameMeasurement measured;
+  FollowedMotion motion{{start}};
+  std::vector<double> stretches;
+  for (int frame = 1; frame < recording.frame_count(); ++frame) {
+    StopIfRequested();
+    measured.cloud = recording.surface[static_cast<std::size_t>(frame)];
+    tracker.Advance(RecordedInput(recording, frame, 0), measured);
+    motion.position.push_back(tracker.best().position());
+    if (!motion.position.back().allFinite()) {
+      throw Error(
+          fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
+                      recording.name, frame));
+    }
+    stretches.push_back(StretchOf(system, motion.position.back()));
+  }
+  motion.stretch = UsualMost(stretches);
+  return motion;
+}
 
 // Each particle as those near it moved: a cloud that is seen again and again draws them onto its
 // points.
@@ -58,23 +117,14 @@ double MatchWidth(const Points& start) {
 }
 
 std::vector<Points> FollowClouds(const Recording& recording) {
-  SpringMassSystem system = MakeStartSystem(recording, {});
-  ScaleToSubsteps(1 / recording.fps, kSubsteps, kStepSafety, &system);
-  TrackerBank tracker(system, EnvironmentOf(recording),
-                      {1 / recording.fps, kSubsteps, true, LateGraspsOf(recording)},
-                      MatchWidth(recording.points[0]), recording.points[0], recording.velocity);
-  FrameMeasurement measured;
-  std::vector<Points> position{recording.points[0]};
-  for (int frame = 1; frame < recording.frame_count(); ++frame) {
-    measured.cloud = recording.surface[static_cast<std::size_t>(frame)];
-    tracker.Advance(RecordedInput(recording, frame, 0), measured);
-    position.push_back(tracker.best().position());
-    if (position.back().allFinite()) continue;
-    throw Error(
-        fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
-                    recording.name, frame));
+  FollowedMotion motion = FollowWith(recording, kSubsteps);
+  for (double substeps = kStiffer * kSubsteps;
+       motion.stretch > kMostStretch && substeps <= kMostSubsteps; substeps *= kStiffer) {
+    FollowedMotion stiffer = FollowWith(recording, static_cast<int>(substeps));
+    if (stiffer.stretch > kStretchesToo * motion.stretch) break;
+    motion = std::move(stiffer);
   }
-  return position;
+  return motion.position;
 }
 
 Points CarryOver(const Recording& known, const Recording& clouds) {

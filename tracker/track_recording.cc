@@ -23,11 +23,20 @@ namespace {
 
 constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
 
-// The points that are not told: a part of them, drawn by the seed.
+bool MeasuredAfterStart(const Recording& recording, int point) {
+  return std::any_of(recording.points.begin() + 1, recording.points.end(),
+                     [&](const Points& frame) { return frame.col(point).allFinite(); });
+}
+
+// The points that are not told, and judged by: a part of them, drawn by the seed; with clouds all
+// that are measured.
 std::vector<int> Hidden(const Recording& recording, const TrackOptions& options) {
   std::vector<int> points(static_cast<std::size_t>(recording.point_count()));
   std::iota(points.begin(), points.end(), 0);
-  if (options.cloud) return points;
+  if (options.cloud) {
+    std::erase_if(points, [&](int i) { return !MeasuredAfterStart(recording, i); });
+    return points;
+  }
   std::mt19937_64 generator(options.seed);
   for (std::size_t i = points.size(); i > 1; --i) std::swap(points[i - 1], points[generator() % i]);
   points.resize(static_cast<std::size_t>(options.hide * static_cast<double>(points.size())));

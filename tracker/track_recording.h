@@ -35,7 +35,7 @@ struct CloudFit {
 struct TrackedMotion {
   std::vector<Points> position;  // T frames of 3 x particles, m
   std::vector<Points> velocity;  // T frames of 3 x particles, m/s
-  std::vector<int> hidden;       // the points that were not told
+  std::vector<int> hidden;       // the points that were not told, and judged by
   TrackErrors errors;
   CloudFit cloud;
   double frames_per_second = 0;  // of processor time, by one thread

@@ -302,7 +302,12 @@ Recording ReadRecordingOrClouds(const std::string& path) {
 
 Recording ReadRecording(const std::string& path) {
   Recording recording = ReadRecordingOrClouds(path);
-  if (recording.point_count() > 0) return recording;
+  ExpectPoints(recording, path);
+  return recording;
+}
+
+void ExpectPoints(const Recording& recording, const std::string& path) {
+  if (recording.point_count() > 0) return;
   throw Error(
       path + ": has clouds ('surface') and no 'points'; `physpring register` makes points of them");
 }

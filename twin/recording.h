@@ -81,14 +81,20 @@ Recording ReadRecording(const std::string& path);
 // The same, but there may be clouds alone: `points` are then frames of 3 x 0.
 Recording ReadRecordingOrClouds(const std::string& path);
 
-// The last for arrays already in memory, without the hash; `path` gives the name and begins
-// messages. Move large ones here: they are let go before the checks.
+// Throws Error, beginning with `path`, if the recording has clouds alone.
+void ExpectPoints(const Recording& recording, const std::string& path);
+
+// ReadRecordingOrClouds for arrays already in memory, without the hash; `path` gives the name and
+// begins messages. Move large ones here: they are let go before the checks.
 Recording ParseRecording(Npz arrays, const std::string& path);
 
 // Writes `recording` to `path` atomically (temporary file, fsync, rename), deflated; positions and
 // velocities in float32, so that ReadRecording gives the same recording back up to float32. Throws
 // Error for a recording that ReadRecording would refuse, and then writes nothing.
 void WriteRecording(const Recording& recording, const std::string& path);
+
+// The arrays that WriteRecording writes. Throws Error where there are none for it (recorded_rod.h).
+Npz StoreRecording(const Recording& recording);
 
 // `recording` as ReadRecording would give it back, had it been written: in float32, checked,
 // without outliers, with the start velocities that are worked out. Throws Error as that would.

@@ -42,6 +42,8 @@ Eigen::VectorXd FrameTimes(const Recording& recording) {
                                     (recording.frame_count() - 1) / recording.fps);
 }
 
+}  // namespace
+
 Npz StoreRecording(const Recording& recording) {
   Npz arrays;
   if (recording.point_count() > 0) arrays["points"] = StoreFrames(recording.points);
@@ -71,8 +73,6 @@ Npz StoreRecording(const Recording& recording) {
   if (!recording.track.empty()) arrays["track"] = StoreFrames(recording.track);
   return arrays;
 }
-
-}  // namespace
 
 void WriteRecording(const Recording& recording, const std::string& path) {
   Npz arrays;

@@ -7,23 +7,11 @@
 
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
+#include "python/bindings/given_recordings.h"
 #include "twin/error.h"
 
 namespace physpring {
 namespace {
-
-GivenRecording Given(RecordingEntry entry, Npz arrays) {
-  GivenRecording given;
-  given.arrays = std::move(arrays);
-  given.recording = ParseRecording(given.arrays, entry.path);
-  if (given.recording.point_count() == 0) {
-    throw Error(entry.path +
-                ": has clouds ('surface') and no 'points'; `physpring register` makes points of "
-                "them");
-  }
-  given.entry = std::move(entry);
-  return given;
-}
 
 GivenRecording Load(const RecordingEntry& entry) {
   GivenRecording given = Given(entry, ReadNpz(entry.path));
@@ -72,15 +60,11 @@ GivenRecording FromArrays(const std::string& name, const nb::kwargs& arrays) {
     const std::string array = nb::cast<std::string>(key);
     npz[array] = ArrayOf(array, value);
   }
-  const auto points = npz.find("points");
-  if (!npz.contains("controllers") && points != npz.end() && !points->second.shape.empty()) {
-    npz["controllers"] = NpzArray::Floats({points->second.shape[0], 0, 3}, nullptr);
+  const auto measured = npz.contains("points") ? npz.find("points") : npz.find("surface");
+  if (!npz.contains("controllers") && measured != npz.end() && !measured->second.shape.empty()) {
+    npz["controllers"] = NpzArray::Floats({measured->second.shape[0], 0, 3}, nullptr);
   }
-  RecordingEntry entry;
-  entry.path = name + ".npz";
-  const std::string bytes = PackNpz(npz, entry.path);
-  GivenRecording given = Given(entry, std::move(npz));
-  given.recording.hash = HashBytes(bytes);  // that of the file, if it is saved
+  GivenRecording given = InMemory(name, std::move(npz));
   Warn(given.recording.warnings);
   return given;
 }
@@ -98,10 +82,13 @@ std::vector<GivenRecording> LoadDataset(const std::vector<std::string>& paths,
 
 std::string ReprOfRecording(const GivenRecording& given) {
   const Recording& recording = given.recording;
+  const std::string seen = recording.point_count() > 0
+                               ? fmt::format("{} points", recording.point_count())
+                               : "clouds";
   return fmt::format(
-      "<physpring.Recording '{}': {} points, {} controllers, {} frames at {:.4g} fps, {:.4g} kg>",
-      recording.name, recording.point_count(), recording.controller_count(),
-      recording.frame_count(), recording.fps, recording.mass);
+      "<physpring.Recording '{}': {}, {} controllers, {} frames at {:.4g} fps, {:.4g} kg>",
+      recording.name, seen, recording.controller_count(), recording.frame_count(), recording.fps,
+      recording.mass);
 }
 
 }  // namespace
@@ -127,7 +114,8 @@ void BindRecording(nb::module_& module) {
       nb::sig("def from_arrays(name: str = 'recording', **arrays: numpy.typing.ArrayLike) -> "
               "Recording"),
       "A recording of arrays, those of a file (docs/files.md). SI units, z up:\n"
-      "  points       (T, N, 3) measured points, followed through T frames; NaN: not seen\n"
+      "  points       (T, N, 3) measured points, followed through T frames; NaN: not seen.\n"
+      "               Without them: surface (T, S, 3), clouds, for `register` and `track`\n"
       "  fps          frames per second; or timestamps (T,), s\n"
       "  controllers  (T, C, 3) what holds and moves the object; default: nothing does\n"
       "  mass         of the object, kg; default 0.1, with a warning\n"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "jobs/tracking.h"
 #include "python/bindings/arrays.h"
-#include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
 #include "tracker/track_recording.h"
 #include "twin/predict.h"
@@ -12,7 +13,7 @@ namespace {
 
 nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, double hide,
                std::uint64_t seed) {
-  Recording recording = RecordingFor(Checked(twin), given);
+  Recording recording = RecordingToTrack(Checked(twin), given.recording, {cloud, hide, seed});
   ExpectSameObject(twin.twin, recording);
   const Twin held = HeldAsIn(&recording, twin.twin);
   TrackedMotion motion;
@@ -26,6 +27,7 @@ nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, d
   result["error"] = motion.errors.tracked;
   result["error_predicted"] = motion.errors.predicted;
   result["error_interpolated"] = motion.errors.interpolated;
+  result["cloud_distance"] = cloud ? motion.cloud.distance : std::nan("");
   result["frames_per_second"] = motion.frames_per_second;
   Warn(WarningsOf(motion));
   return result;

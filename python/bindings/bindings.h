@@ -36,6 +36,7 @@ const Twin& Checked(const GivenTwin& given);
 void Warn(const std::vector<std::string>& lines);
 
 void BindRecording(nanobind::module_& module);
+void BindRegistration(nanobind::module_& module);
 void BindTwin(nanobind::module_& module);
 void BindSimulator(nanobind::module_& module);
 void BindTraining(nanobind::module_& module);

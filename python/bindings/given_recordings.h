@@ -15,10 +15,16 @@ namespace physpring {
 
 using GivenRecordings = std::vector<const GivenRecording*>;
 
+// Of arrays. Throws Error as ParseRecording does.
+GivenRecording Given(RecordingEntry entry, Npz arrays);
+
+// The same, as if it had been read from NAME.npz.
+GivenRecording InMemory(const std::string& name, Npz arrays);
+
 // To fit. Throws Error as CollectFitData does, and where none is given.
 FitData FitDataOf(const GivenRecordings& given);
 
-// By the twin's clock.
+// By the twin's clock. Throws Error where there are clouds alone.
 Recording RecordingFor(const Twin& twin, const GivenRecording& given);
 
 // The warnings of `recording` that were not there when it was given, to `warnings`.

@@ -43,6 +43,7 @@ NB_MODULE(_core, module) {
       "The instruction set that sub-steps use: 'avx512', 'avx2' or 'scalar'.");
   spdlog::set_level(spdlog::level::off);  // a training's log is for the program
   physpring::BindRecording(module);
+  physpring::BindRegistration(module);
   physpring::BindTwin(module);
   physpring::BindSimulator(module);
   physpring::BindTraining(module);

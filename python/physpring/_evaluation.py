@@ -24,6 +24,7 @@ from physpring._recordings import (
     twin_of,
     whole,
 )
+from physpring._training import in_words_of_python
 
 Array = NDArray[np.float64]
 
@@ -169,6 +170,7 @@ class Track:
     error: float
     error_predicted: float  #: of the prediction from frame 0, without any measurement
     error_interpolated: float  #: of interpolation between the points that are told, without a twin
+    cloud_distance: float  #: of clouds from the nearest particles in the last second; NaN without
     frames_per_second: float  #: of processor time, by one thread
 
     def __repr__(self) -> str:
@@ -184,11 +186,15 @@ def track(twin: _core.Twin | str | os.PathLike,
           hide: float = 0,
           seed: int = 1) -> Track:
     """Follows a twin's object through a recording that sees only a part of it, as `physpring track`
-    does. cloud: follow the recording's `surface`, and judge by its points. hide: this part of the
+    does. cloud: follow the recording's `surface`, and judge by its points if it has any; without them
+    the twin is placed in the first cloud. hide: this part of the
     points is not told (0 to 0.95), and judged by; `seed` says which.
     """
     number('hide', hide, 0, 0.95)
     if cloud and hide > 0:
         raise _core.Error('hide is for points: with cloud=True all of them are hidden')
     one = one_recording(recording, 'heldout')
-    return Track(**_core.track(twin_of(twin), one, cloud, hide, seed_of(seed)))
+    try:
+        return Track(**_core.track(twin_of(twin), one, cloud, hide, seed_of(seed)))
+    except _core.Error as error:
+        raise _core.Error(in_words_of_python(str(error))) from None

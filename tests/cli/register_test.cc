@@ -8,7 +8,9 @@
 #include "tests/support/plain_rope.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"
+#include "trainer/bodies/start_system.h"
 #include "twin/atomic_file.h"
+#include "twin/twin.h"
 #include "twin/uniform.h"
 
 namespace physpring {
@@ -68,6 +70,38 @@ TEST_F(Register, NamesPointsAnewByFits) {
   }
   EXPECT_GT(count, 0.8 * (rope.train_frames - 1) * rope.point_count());
   EXPECT_LT(sum / count, 5e-3);
+}
+
+// Its twin says where the points are: they are as many then, in the twin's order.
+TEST_F(Register, TakesThePointsOfATwin) {
+  const Recording rope = PlainRope().Record();
+  Twin twin;
+  twin.levels.push_back({MakeStartSystem(rope, {}), {}, 600});
+  twin.points = rope.point_count();
+  twin.fps = rope.fps;
+  const std::string path = folder_.File("rope.twin.npz");
+  WriteTwin(twin, path);
+  WriteClouds(rope);
+  const ProgramResult result = RunProgram({"register", clouds_, "--like", path, "-o", named_});
+  ASSERT_EQ(result.status, 0) << result.errors;
+  const Recording named = ReadRecording(named_);
+  ASSERT_EQ(named.point_count(), rope.point_count());
+  EXPECT_LT((named.points[0] - rope.points[0]).colwise().norm().maxCoeff(), 0.02);
+  EXPECT_EQ(RunProgram({"eval", path, named_}).status, 0);
+
+  const std::string states = folder_.File("states.npz");
+  const ProgramResult tracked = RunProgram({"track", path, clouds_, "--cloud", "-o", states});
+  ASSERT_EQ(tracked.status, 0) << tracked.errors;
+  EXPECT_THAT(tracked.output, HasSubstr("no point was measured"));
+  EXPECT_TRUE(FailsWith(RunProgram({"track", path, clouds_, "-o", folder_.File("none.npz")}),
+                        "no 'points'; --cloud follows them"));
+
+  twin.points -= 2;
+  twin.interior = 2;
+  WriteTwin(twin, path);
+  EXPECT_TRUE(
+      FailsWith(RunProgram({"register", clouds_, "--like", path, "-o", folder_.File("other.npz")}),
+                path + ": has interior particles; expected a twin without"));
 }
 
 // A sheet that is carried along, of which one half is seen.
