@@ -2,6 +2,7 @@
 // physpring register: clouds of points without names -> a recording of points that are followed.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/warnings.h"
 #include "jobs/registration.h"
+#include "registration/placed_twin.h"
 
 namespace physpring {
 namespace {
@@ -38,7 +40,7 @@ void RunMarkers(const RegisterArguments& arguments, const Recording& clouds) {
 
 // Of a recording, or of a twin.
 Recording ReadKnownPoints(const std::string& path) {
-  return path.ends_with(".twin.npz") ? KnownPointsOf(ReadTwin(path), path) : ReadRecording(path);
+  return path.ends_with(".twin.npz") ? ReferenceOf(ReadTwin(path)) : ReadRecording(path);
 }
 
 CloudRegistration RegisterWithProgress(const Recording& clouds,
@@ -70,8 +72,10 @@ void Run(const RegisterArguments& arguments) {
   fmt::print("{}: {} points, {:.1f} mm apart; clouds tell of {:.0f} % of them in a frame\n",
              arguments.output, registered.recording.point_count(), 1e3 * registered.fit.spacing,
              100 * registered.seen);
-  fmt::print("clouds are {:.1f} mm from the nearest points, mean of the last second\n",
-             1e3 * registered.fit.distance);
+  if (std::isfinite(registered.fit.distance)) {
+    fmt::print("clouds are {:.1f} mm from the nearest points, mean of the last second\n",
+               1e3 * registered.fit.distance);
+  }
   PrintWarnings(registration.warnings);
 }
 

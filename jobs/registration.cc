@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exporter/mesh_place.h"
 #include "exporter/mesh_samples.h"
 #include "registration/cloud_particles.h"
-#include "registration/placed_twin.h"
 #include "registration/refine_names.h"
 #include "registration/register_clouds.h"
 #include "trainer/data/fit_data.h"
@@ -32,9 +32,12 @@ RegisteredClouds RegisterOnShape(const Recording& clouds, const RegistrationOpti
 }
 
 void AddDoubts(const RegisteredClouds& registered, std::vector<std::string>* warnings) {
-  if (registered.lost) {
-    warnings->emplace_back("it is lost: in the end the clouds are not where the points are");
+  if (registered.lost_from) {
+    warnings->push_back(
+        fmt::format("it is lost from frame {} on: the clouds are not where the points are",
+                    *registered.lost_from));
   }
+  if (std::isnan(registered.fit.distance)) warnings->emplace_back("the last second has no cloud");
   if (registered.outliers > 0) {
     warnings->push_back(
         fmt::format("{} points of the first cloud are far from all others, and were left out",
@@ -77,11 +80,6 @@ void Refine(int threads, const TellProgress& progress, CloudRegistration* regist
 
 }  // namespace
 
-Recording KnownPointsOf(const Twin& twin, const std::string& path) {
-  if (twin.interior > 0) throw Error(path + ": has interior particles; expected a twin without");
-  return ReferenceOf(twin);
-}
-
 void ExpectClouds(const Recording& recording, const std::string& path) {
   if (recording.point_count() == 0) return;
   throw Error(path + ": has 'points' already; without them, points are made of its clouds");
@@ -97,8 +95,15 @@ CloudRegistration RegisterAsAsked(const Recording& clouds, const RegistrationOpt
   } else {
     registration.clouds = RegisterClouds(clouds, options.points);
   }
-  if (options.refine && !registration.clouds.lost) {
+  if (options.refine && registration.clouds.lost_from) {
+    registration.warnings.emplace_back("not refined: a fit to points that are lost tells nothing");
+  } else if (options.refine) {
     Refine(options.threads, progress, &registration);
+  }
+  const int made = registration.clouds.recording.point_count();
+  if (made < options.points) {
+    registration.warnings.push_back(
+        fmt::format("{} points are made: the first clouds show no more places", made));
   }
   AddDoubts(registration.clouds, &registration.warnings);
   return registration;

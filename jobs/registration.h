@@ -12,7 +12,6 @@
 #include "registration/register_markers.h"
 #include "registration/told_points.h"
 #include "twin/recording.h"
-#include "twin/twin.h"
 
 namespace physpring {
 
@@ -30,10 +29,6 @@ struct CloudRegistration {
   std::string refined;  // what `refine` came to, one line; empty: it was not done
   std::vector<std::string> warnings;
 };
-
-// The object of a twin in its reference configuration. Throws Error, beginning with `path`, for a
-// twin with interior particles.
-Recording KnownPointsOf(const Twin& twin, const std::string& path);
 
 // Throws Error unless the recording has clouds and no points.
 void ExpectClouds(const Recording& recording, const std::string& path);

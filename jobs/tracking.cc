@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "registration/placed_twin.h"
 #include "twin/clock_offset.h"
 #include "twin/error.h"
@@ -22,11 +24,13 @@ std::vector<std::string> WarningsOf(const TrackedMotion& motion) {
   constexpr double kWorse = 1.1;
   const TrackErrors& errors = motion.errors;
   std::vector<std::string> warnings;
-  if (motion.cloud.distance > motion.cloud.spacing) {
+  if (motion.cloud && std::isnan(motion.cloud->distance)) {
+    warnings.emplace_back("the last second has no cloud: from the last one on, it is predicted");
+  } else if (motion.cloud && motion.cloud->distance > motion.cloud->spacing) {
     warnings.push_back(
         fmt::format("it is lost: in the last second the cloud is {:.1f} mm from the nearest nodes, "
                     "which are {:.1f} mm apart",
-                    1e3 * motion.cloud.distance, 1e3 * motion.cloud.spacing));
+                    1e3 * motion.cloud->distance, 1e3 * motion.cloud->spacing));
   }
   if (errors.tracked > kWorse * errors.predicted) {
     warnings.emplace_back("measurements make it worse than the prediction without any");

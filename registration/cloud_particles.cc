@@ -56,6 +56,14 @@ Points PointsOf(const Points& cloud) {
   return cloud(Eigen::all, known);
 }
 
+Points Thinned(const Points& cloud, int most) {
+  Points points = PointsOf(cloud);
+  if (points.cols() <= most) return points;
+  const Eigen::Index step = (points.cols() + most - 1) / most;
+  const Eigen::Index count = (points.cols() + step - 1) / step;
+  return points(Eigen::all, Eigen::seqN(0, count, step));
+}
+
 Points WithoutOutliers(const Points& cloud) {
   constexpr int kNearest = 4;  // itself is one of them
   constexpr double kFar = 6;

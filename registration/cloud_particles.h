@@ -12,6 +12,9 @@ namespace physpring {
 // The columns of `cloud` that are points: a column of NaN is none.
 Points PointsOf(const Points& cloud);
 
+// Its points, or every second, third ... of them, so that there are `most` (>= 1) or fewer.
+Points Thinned(const Points& cloud, int most);
+
 // The points that are not far from all others: no more than 6 times as far from their third nearest
 // as is usual.
 Points WithoutOutliers(const Points& cloud);

@@ -8,8 +8,11 @@
 #include <limits>
 #include <utility>
 
+#include "registration/cloud_particles.h"
+#include "tracker/track_recording.h"
 #include "tracker/tracker_bank.h"
 #include "trainer/bodies/start_system.h"
+#include "twin/checks/motion_scale.h"
 #include "twin/error.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
@@ -23,7 +26,8 @@ namespace {
 
 // A frame, at first. Fewer make a body that sags, more one that rings (docs/decisions/127).
 constexpr int kSubsteps = 40, kMostSubsteps = 300;
-constexpr double kStiffer = 1.5;  // each further body, in sub-steps
+constexpr int kMostPerParticle = 4;  // points of a cloud that pull
+constexpr double kStiffer = 1.5;     // each further body, in sub-steps
 // A body that becomes longer than this is too soft, unless a stiffer one does so, too: then it is
 // the object that stretches.
 constexpr double kMostStretch = 0.01, kStretchesToo = 0.9;
@@ -47,13 +51,6 @@ double StretchOf(const SpringMassSystem& system, const Points& position) {
   return all > 0 ? longer / all : 0;
 }
 
-double UsualMost(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto tenth = values.begin() + static_cast<std::ptrdiff_t>(9 * values.size() / 10);
-  std::nth_element(values.begin(), tenth, values.end());
-  return *tenth;
-}
-
 // By a body that is as stiff as so many sub-steps a frame bear.
 FollowedMotion FollowWith(const Recording& recording, int substeps) {
   SpringMassSystem system = MakeStartSystem(recording, {});
@@ -67,7 +64,8 @@ FollowedMotion FollowWith(const Recording& recording, int substeps) {
   std::vector<double> stretches;
   for (int frame = 1; frame < recording.frame_count(); ++frame) {
     StopIfRequested();
-    measured.cloud = recording.surface[static_cast<std::size_t>(frame)];
+    measured.cloud = Thinned(recording.surface[static_cast<std::size_t>(frame)],
+                             kMostPerParticle * static_cast<int>(start.cols()));
     tracker.Advance(RecordedInput(recording, frame, 0), measured);
     motion.position.push_back(tracker.best().position());
     if (!motion.position.back().allFinite()) {
@@ -77,7 +75,7 @@ FollowedMotion FollowWith(const Recording& recording, int substeps) {
     }
     stretches.push_back(StretchOf(system, motion.position.back()));
   }
-  motion.stretch = UsualMost(stretches);
+  motion.stretch = Quantile(0.9, std::move(stretches));
   return motion;
 }
 
@@ -93,10 +91,14 @@ Points MoveWithNeighbours(const Points& from, const Points& to) {
 
 }  // namespace
 
-Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest) {
+Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest,
+                        int interior) {
   Recording recording = clouds;
-  const Points unseen = Points::Constant(3, start.cols(), std::numeric_limits<double>::quiet_NaN());
-  recording.points = {start};
+  const Points points = start.leftCols(start.cols() - interior);
+  const Points unseen =
+      Points::Constant(3, points.cols(), std::numeric_limits<double>::quiet_NaN());
+  recording.points = {points};
+  recording.interior = start.rightCols(interior);
   while (recording.points.size() < clouds.surface.size()) recording.points.push_back(unseen);
   recording.start.resize(3, start.cols() + clouds.controller_count());
   recording.start << start, clouds.controllers[0];
@@ -135,7 +137,7 @@ Points CarryOver(const Recording& known, const Recording& clouds) {
                     clouds.name, clouds.controller_count(), known.name, known.controller_count()));
   }
   const Points& there = clouds.controllers[0];
-  Points start = known.start.leftCols(known.point_count()), hands = known.controllers[0];
+  Points start = known.start.leftCols(known.particle_count()), hands = known.controllers[0];
   if (there.cols() > 0) {
     start = MoveRigidly(known.controllers[0], there, start);
     hands = MoveRigidly(known.controllers[0], there, hands);
@@ -151,7 +153,14 @@ Points CarryOver(const Recording& known, const Recording& clouds) {
     const double part = static_cast<double>(t) / static_cast<double>(frames - 1);
     way.controllers.emplace_back(hands + part * (there - hands));
   }
-  return MoveWithNeighbours(start, FollowClouds(way).back());
+  start = MoveWithNeighbours(start, FollowClouds(way).back());
+  const double off = UsualDistance(DistancesToNearest(start, clouds.surface[0]));
+  if (!(off > kLostWidths * MatchWidth(start))) return start;
+  throw Error(
+      fmt::format("recording {}: its first cloud is {:.1f} mm from where the points of {} come to "
+                  "be, which are "
+                  "{:.1f} mm apart: is it another object, or does it start in another shape?",
+                  clouds.name, 1e3 * off, known.name, 1e3 * MedianSpacing(start)));
 }
 
 }  // namespace physpring

@@ -12,8 +12,10 @@
 namespace physpring {
 
 // The clouds' recording with particles that are known in frame 0 alone, and at rest there. `start`:
-// 3 x particles, m. `rest`: stress-free positions, 3 x (particles + controllers), m.
-Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest);
+// 3 x particles, m, of which the last ones are `interior`. `rest`: stress-free positions, 3 x
+// (particles + controllers), m.
+Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest,
+                        int interior = 0);
 
 // The same where that is the stress-free shape.
 Recording AtRestInFrame0(const Recording& clouds, const Points& start);
@@ -22,14 +24,17 @@ Recording AtRestInFrame0(const Recording& clouds, const Points& start);
 // less than a two-hundredth of the body's size, since clouds have noise.
 double MatchWidth(const Points& start);
 
+// A cloud that is so many of these widths from the particles is not where they are.
+inline constexpr double kLostWidths = 2.5;
+
 // Where the particles of such a recording are in all frames: T frames of 3 x particles, m. Throws
 // Error where they make no body (twin/topology.h), and where the motion diverges.
 std::vector<Points> FollowClouds(const Recording& recording);
 
 // The particles of another recording of the object, where they are in frame 0 of the clouds: moved
 // there as a rigid body with the controllers, then within a second with the controllers and the
-// first cloud. 3 x particles, m. Throws Error as FollowClouds does, and where the numbers of
-// controllers differ.
+// first cloud. 3 x particles, m, interior ones included. Throws Error as FollowClouds does, where
+// the numbers of controllers differ, and where the first cloud is not where that has brought them.
 Points CarryOver(const Recording& known, const Recording& clouds);
 
 }  // namespace physpring

@@ -12,7 +12,8 @@ Recording ReferenceOf(const Twin& twin) {
   recording.fps = twin.fps;
   recording.mass = system.mass.sum();
   recording.gravity = twin.gravity;
-  recording.points = {system.position.leftCols(system.node_count())};
+  recording.points = {system.position.leftCols(twin.points)};
+  recording.interior = system.position.middleCols(twin.points, twin.interior);
   recording.controllers = {system.position.rightCols(system.controllers)};
   recording.start = recording.rest = system.position;
   recording.rest_given = true;
@@ -25,11 +26,9 @@ Recording ReferenceOf(const Twin& twin) {
 Recording PlaceTwin(const Twin& twin, const Recording& clouds) {
   const Recording reference = ReferenceOf(twin);
   const Points start = CarryOver(reference, clouds);
-  Recording placed = WithParticles(clouds, start, reference.rest);
+  Recording placed = WithParticles(clouds, start, reference.rest, twin.interior);
   placed.rest_given = true;
   placed.rod = twin.rod;
-  placed.interior = start.rightCols(twin.interior);
-  for (Points& points : placed.points) points = Points(points.leftCols(twin.points));
   return placed;
 }
 

@@ -8,8 +8,7 @@
 
 namespace physpring {
 
-// The twin's object in its reference configuration, at rest for one frame: all particles are
-// points.
+// The twin's object in its reference configuration, at rest for one frame.
 Recording ReferenceOf(const Twin& twin);
 
 // The clouds' recording with the twin's points, known in frame 0 alone, and its interior particles:

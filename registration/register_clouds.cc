@@ -24,10 +24,14 @@ constexpr int kMostPerPoint = 16;      // carried back, by the points of the rou
 constexpr double kFarFromRough =
     1.5;  // spacings: what is carried back farther away is not the body
 
-// In the middle of all frames.
+// In the middle of all frames that have one. Frame 0 has.
 int PointsOfACloud(const std::vector<Points>& clouds) {
   std::vector<int> counts;
-  for (const Points& cloud : clouds) counts.push_back(static_cast<int>(PointsOf(cloud).cols()));
+  for (const Points& cloud : clouds) {
+    if (const auto count = static_cast<int>(PointsOf(cloud).cols()); count > 0) {
+      counts.push_back(count);
+    }
+  }
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());
   return *middle;
@@ -51,7 +55,7 @@ void CarryBack(const Points& cloud, const Points& now, const Points& start,
   const double reach = kFarFromRough * MedianSpacing(start);
   const LocalMotion motion(now, start);
   const NeighbourSearch search_at_start(start);
-  const Points points = PointsOf(cloud);
+  const Points points = Thinned(cloud, kMostPerPoint * static_cast<int>(now.cols()));
   for (const auto& point : points.colwise()) {
     const Eigen::Vector3d back = *motion.Move(point);
     if (search_at_start.Nearest(back, 1)[0].distance < reach) carried->push_back(back);
@@ -74,7 +78,9 @@ Points ShapeOf(const Recording& rough, const std::vector<Points>& position) {
   return shape;
 }
 
+// Throws Error unless the particles are enough for a body.
 RegisteredClouds Register(const Recording& recording) {
+  ExpectEnough(recording, recording.point_count(), kFewestSeen);
   return TellPoints(recording, FollowClouds(recording));
 }
 
@@ -115,11 +121,8 @@ RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface
 
 RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known) {
   ExpectSeen(clouds, kFewestSeen);
-  if (known.interior_count() > 0) {
-    throw Error(fmt::format(
-        "recording {}: has interior particles; expected a recording without them", known.name));
-  }
-  Recording recording = WithParticles(clouds, CarryOver(known, clouds), known.rest);
+  Recording recording =
+      WithParticles(clouds, CarryOver(known, clouds), known.rest, known.interior_count());
   recording.rest_given = true;
   recording.rod = known.rod;
   return Register(recording);

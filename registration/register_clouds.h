@@ -32,7 +32,7 @@ RegisteredClouds RegisterClouds(const Recording& clouds, int points);
 // times as many as a cloud has.
 RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points);
 
-// The same with the points of `known`, another recording of the object without interior particles.
+// The same with the points of `known`, another recording of the object, and its interior particles.
 RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known);
 
 }  // namespace physpring

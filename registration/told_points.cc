@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "registration/told_points.h"
 
+#include <cmath>
 #include <limits>
 
 #include "registration/followed_body.h"
@@ -9,7 +10,6 @@
 namespace physpring {
 namespace {
 
-constexpr double kLost = 2.5;         // widths of a match, that clouds are from the points
 constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that is not lost
 // as soft_match.h names it; the fewest points of a cloud that tell of a particle
 constexpr double kNone = 0.05, kFewestPoints = 0.3;
@@ -20,20 +20,29 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
   RegisteredClouds registered{recording};
   const double width = MatchWidth(position[0]);
   double seen = 0, all = 0;
+  std::optional<int> lost_from;
   for (std::size_t t = 1; t < position.size(); ++t) {
     Points& points = registered.recording.points[t];
     points.setConstant(std::numeric_limits<double>::quiet_NaN());
     const SoftMatch match = MatchSoftly(position[t], recording.surface[t], width, kNone);
+    double seen_now = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      ++all;
       if (match.count[i] < kFewestPoints) continue;
-      ++seen;
+      ++seen_now;
       points.col(i) = match.target.col(i);
     }
+    seen += seen_now;
+    all += static_cast<double>(points.cols());
+    const double distance = UsualDistance(DistancesToNearest(position[t], recording.surface[t]));
+    if (std::isnan(distance)) continue;  // no cloud
+    const bool lost = distance > kLostWidths * width ||
+                      seen_now < kFewestTold * static_cast<double>(points.cols());
+    if (!lost) lost_from.reset();
+    if (lost && !lost_from) lost_from = static_cast<int>(t);
   }
   registered.seen = seen / all;
   registered.fit = FitOfClouds(position, recording);
-  registered.lost = registered.fit.distance > kLost * width || registered.seen < kFewestTold;
+  registered.lost_from = lost_from;
   return registered;
 }
 

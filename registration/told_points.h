@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_REGISTRATION_TOLD_POINTS_H_
 #define PHYSPRING_REGISTRATION_TOLD_POINTS_H_
 
+#include <optional>
 #include <vector>
 
 #include "tracker/track_recording.h"
@@ -14,10 +15,12 @@ namespace physpring {
 struct RegisteredClouds {
   // The clouds' recording with `points`, NaN where no point of the cloud tells of one.
   Recording recording;
-  double seen = 0;    // the part of all points in all frames after frame 0 that clouds tell of
-  CloudFit fit;       // of the points where they are followed to
-  bool lost = false;  // the clouds are not where the points are, or tell of hardly any
-  int outliers = 0;   // points of the first cloud that were left out
+  double seen = 0;  // the part of all points in all frames after frame 0 that clouds tell of
+  CloudFit fit;     // of the points where they are followed to
+  // The frame from which on, to the end, the clouds are not where the points are, or tell of hardly
+  // any of them.
+  std::optional<int> lost_from;
+  int outliers = 0;  // points of the first cloud that were left out
 };
 
 // The recording with the points that its clouds tell of particles at `position`, T frames of 3 x

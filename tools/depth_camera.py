@@ -22,8 +22,11 @@ class Camera:
             with open(path, encoding="utf-8") as file:
                 text = json.load(file)
             self.fx, self.fy, self.cx, self.cy = (float(text[key]) for key in KEYS)
-            pose = np.array(text.get("camera_to_world", np.eye(4).tolist()), float)
-        except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError) as error:
+            pose = np.array(text["camera_to_world"], float)
+        except KeyError as error:
+            raise Error(f"{path}: has no {error.args[0]}, expected the numbers {', '.join(KEYS)} and "
+                        "camera_to_world, 4 rows of 4") from None
+        except (OSError, ValueError, TypeError, OverflowError, RecursionError) as error:
             raise Error(f"{path}: expected JSON with the numbers {', '.join(KEYS)} and "
                              f"camera_to_world, 4 rows of 4: {error}") from None
         if pose.shape != (4, 4) or not np.isfinite(pose).all() or list(pose[3]) != [0, 0, 0, 1]:

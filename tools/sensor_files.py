@@ -2,6 +2,7 @@
 """Arrays, folders of images and 2-D tracks from files. Imported by sensors_to_npz.py."""
 
 import pathlib
+import re
 import zipfile
 import zlib
 
@@ -35,10 +36,20 @@ def array_of_npz(path, names, what):
                      f"{', '.join(loaded)}")
 
 
+def files_in(folder, *endings):
+    """Files of a folder with these endings, in the order of their names: 9.npy comes before 10.npy,
+    and 0009.npy before 0010.npy."""
+    def place(path):
+        return [(int(part), "") if part.isdecimal() else (-1, part)
+                for part in re.split(r"([0-9]+)", path.name)], path.name
+    return sorted((path for path in pathlib.Path(folder).glob("*")
+                   if path.suffix.lower() in endings), key=place)
+
+
 def images_in(folder, unit):
     """The images of a folder in the order of their names: .npy, or .png if there is Pillow."""
     folder = pathlib.Path(folder)
-    files = sorted(path for path in folder.glob("*") if path.suffix.lower() in (".npy", ".png"))
+    files = files_in(folder, ".npy", ".png")
     shape = None
     if not files:
         raise Error(f"{folder}: has no images *.npy or *.png")

@@ -21,7 +21,7 @@ from cloud_files import read_cloud
 from depth_camera import Camera, cloud_of, depth_at, thinned
 from npz_files import npz_bytes, write_files
 from safe_pickle import Error
-from sensor_files import array_of_npz, images_in, read_tracks
+from sensor_files import array_of_npz, files_in, images_in, read_tracks
 
 EXAMPLES = """examples:
   # CoTracker or TAPIR on one camera
@@ -86,8 +86,7 @@ def clouds_of_view(view, options):
 
 def clouds_of_folder(options):
     folder = pathlib.Path(options.folder)
-    files = sorted(path for path in folder.glob("*") if path.suffix.lower() in
-                   (".npy", ".ply", ".pcd"))
+    files = files_in(folder, ".npy", ".ply", ".pcd")
     if len(files) < 2:
         raise Error(f"{folder}: has {len(files)} clouds (.npy, .ply, .pcd), expected 2 or more")
     return padded([thinned(read_cloud(path), options.most) for path in files])
@@ -151,9 +150,13 @@ def controllers_of(options, frames):
 
 def recording_of(options):
     arrays = {}
+    if options.kind != "c3d" and not options.fps:  # before the files, which take time
+        raise Error("--fps is needed")
     if options.kind == "c3d":
         arrays["points"], controllers, rate = markers_of_c3d(options)
         options.fps = options.fps or rate
+        if not options.fps:
+            raise Error(f"{options.file}: has no frame rate; --fps is needed")
         if options.held and options.controllers:
             raise Error("--held and --controllers exclude each other")
         if not options.held:
@@ -169,8 +172,6 @@ def recording_of(options):
     measured = next(iter(arrays.values()))
     if options.kind != "c3d":
         controllers = controllers_of(options, len(measured))
-    if not options.fps:
-        raise Error("--fps is needed")
     arrays["controllers"] = filled_in(controllers)
     if "points" in arrays:  # what no frame shows is no point
         ever = np.isfinite(arrays["points"]).all(axis=2).any(axis=0)

@@ -153,19 +153,27 @@ std::vector<double> DistancesToNearest(const Points& nodes, const Points& cloud)
   return distances;
 }
 
+double UsualDistance(std::vector<double> distances) {
+  constexpr double kNearest = 0.8;
+  if (distances.empty()) return kNotSeen;
+  std::sort(distances.begin(), distances.end());
+  const auto count = std::max(1.0, kNearest * static_cast<double>(distances.size()));
+  const auto end = distances.begin() + static_cast<std::ptrdiff_t>(count);
+  return std::accumulate(distances.begin(), end, 0.0) /
+         static_cast<double>(end - distances.begin());
+}
+
 CloudFit FitOfClouds(const std::vector<Points>& position, const Recording& recording) {
   const std::size_t frames = position.size();
   const std::size_t last_second =
       std::min(frames - 1, static_cast<std::size_t>(std::ceil(recording.fps)));
-  double sum = 0, count = 0;
+  std::vector<double> distances;
   for (std::size_t t = frames - last_second; t < frames; ++t) {
-    for (double distance : DistancesToNearest(position[t], recording.surface[t])) {
-      sum += distance;
-      ++count;
-    }
+    const std::vector<double> of_frame = DistancesToNearest(position[t], recording.surface[t]);
+    distances.insert(distances.end(), of_frame.begin(), of_frame.end());
   }
   const bool alone = position[0].cols() < 2;
-  return {count > 0 ? sum / count : 0, alone ? 0 : MedianSpacing(position[0])};
+  return {UsualDistance(std::move(distances)), alone ? 0 : MedianSpacing(position[0])};
 }
 
 TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,

@@ -5,6 +5,7 @@
 #define PHYSPRING_TRACKER_TRACK_RECORDING_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "twin/recording.h"
@@ -26,9 +27,9 @@ struct TrackErrors {
   double interpolated;  // of points that go along with the nearest ones that are told, by no twin
 };
 
-// Where a cloud was in the last second, from the nodes that should be in it; 0 without one.
+// Where clouds were in the last second, from the nodes that should be in them.
 struct CloudFit {
-  double distance = 0;  // mean of its points to their nearest node, m
+  double distance = 0;  // as UsualDistance of its points to their nearest node, m
   double spacing = 0;   // of the nodes, m
 };
 
@@ -37,13 +38,16 @@ struct TrackedMotion {
   std::vector<Points> velocity;  // T frames of 3 x particles, m/s
   std::vector<int> hidden;       // the points that were not told, and judged by
   TrackErrors errors;
-  CloudFit cloud;
+  std::optional<CloudFit> cloud;  // of clouds that were followed
   double frames_per_second = 0;  // of processor time, by one thread
 };
 
 // How far each point of a cloud is from the nearest of `nodes` (3 x nodes), m; columns of NaN are
 // no points.
 std::vector<double> DistancesToNearest(const Points& nodes, const Points& cloud);
+
+// The mean of the nearest four fifths of them: the others may be false points. NaN without any.
+double UsualDistance(std::vector<double> distances);
 
 // Of particles that are at `position`, T frames of 3 x particles, m, in the recording's clouds.
 CloudFit FitOfClouds(const std::vector<Points>& position, const Recording& recording);

@@ -54,6 +54,11 @@ void FillReleased(const NpzFields& fields, Recording* recording) {
 // Its columns of start, rest and order, where the grasp does not begin in frame 0.
 void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording& read, int column,
                     Recording* recording) {
+  if (read.point_count() == 0) {
+    fields.Fail("held", fmt::format("says that controller {} takes hold in frame {}; in clouds "
+                                    "without 'points' all hold from frame 0 on",
+                                    grasp.controller, grasp.first));
+  }
   const int particles = read.particle_count();
   const Points start = read.start.leftCols(read.point_count());
   const auto first = static_cast<std::size_t>(grasp.first);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "twin/atomic_file.h"
+#include "twin/checks/clouds.h"
 #include "twin/checks/lost_points.h"
 #include "twin/checks/objects.h"
 #include "twin/checks/outliers.h"
@@ -69,16 +70,24 @@ void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording
   }
 }
 
-// Whether nothing is said of points that are followed.
+// Then nothing else may be said of points that are followed.
 bool HasCloudsAlone(const NpzFields& fields) {
-  constexpr std::array kOfPoints{"points", "interior", "rest",  "velocity",
-                                 "order",  "rod",      "object"};
-  return fields.Has("surface") && std::none_of(kOfPoints.begin(), kOfPoints.end(),
-                                               [&](const char* name) { return fields.Has(name); });
+  if (fields.Has("points") || !fields.Has("surface")) return false;
+  for (const char* name : {"interior", "rest", "velocity", "order", "rod", "object"}) {
+    if (fields.Has(name)) fields.Fail(name, "is of 'points', which are missing");
+  }
+  return true;
+}
+
+std::vector<Points> ReadClouds(NpzFields& fields, const std::string& path, Recording& recording) {
+  std::vector<Points> clouds = fields.FramesWithUnseen("surface", "S");
+  const std::string none = TakeZerosAsNone(path + ": array 'surface'", &clouds);
+  if (!none.empty()) recording.warnings.push_back(none);
+  return clouds;
 }
 
 void ReadCloudsAlone(NpzFields& fields, const std::string& path, Recording& recording) {
-  recording.surface = ReadTracks(fields, path, "surface", "S", recording);
+  recording.surface = ReadClouds(fields, path, recording);
   if (fields.Extent("T") < 2) fields.Fail("surface", "has fewer than 2 frames");
   recording.points.assign(fields.Extent("T"), Points(3, 0));
 }
@@ -104,8 +113,7 @@ void ReadMeasured(NpzFields& fields, const std::string& path, Recording& recordi
     recording.force = fields.FramesOfNumbers("force", "C", times_of_controllers);
     ExpectForceSizes(fields, recording.force);
   }
-  if (fields.Has("surface") && !alone)
-    recording.surface = ReadTracks(fields, path, "surface", "S", recording);
+  if (fields.Has("surface") && !alone) recording.surface = ReadClouds(fields, path, recording);
   if (fields.Has("track")) recording.track = ReadTracks(fields, path, "track", "K", recording);
 }
 
@@ -248,6 +256,13 @@ void TellObjects(const std::string& path, Recording& recording) {
                   path, ObjectCount(recording)));
 }
 
+void AddWarnings(const std::string& path, const std::vector<std::string>& oddities,
+                 Recording* recording) {
+  for (const std::string& oddity : oddities) {
+    recording->warnings.push_back(fmt::format("{}: {}", path, oddity));
+  }
+}
+
 // Works out what is not given, and says what is odd.
 void Check(const std::string& path, bool velocity_given, Recording& recording) {
   const std::string left_out = LeaveOutOutliers(path, &recording);
@@ -255,9 +270,7 @@ void Check(const std::string& path, bool velocity_given, Recording& recording) {
   TellObjects(path, recording);
   CutRodBetweenObjects(&recording);
   if (!velocity_given) SetVelocity(path, recording);
-  for (const std::string& oddity : FindOddities(recording)) {
-    recording.warnings.push_back(fmt::format("{}: {}", path, oddity));
-  }
+  AddWarnings(path, FindOddities(recording), &recording);
 }
 
 // All that the arrays say.
@@ -283,7 +296,10 @@ Recording ReadArrays(const Npz& arrays, const std::string& path) {
 // ReadRecording the bytes before both.
 Recording ParseRecording(Npz arrays, const std::string& path) {
   Recording recording = ReadArrays(arrays, path);
-  if (recording.point_count() == 0) return recording;
+  if (recording.point_count() == 0) {
+    AddWarnings(path, FindOddClouds(recording), &recording);
+    return recording;
+  }
   const bool velocity_given = arrays.contains("velocity");
   arrays.clear();
   Check(path, velocity_given, recording);

@@ -175,8 +175,8 @@ void JoinGroups(const Points& nodes, double widest_spacing, const std::string& w
       throw Error(
           fmt::format("{}: the particles fall into separate objects, {:.4g} m apart where "
                       "neighbours are at most "
-                      "{:.4g} m apart (particle {} is not connected to particle {}); a recording "
-                      "holds one object",
+                      "{:.4g} m apart (particle {} is not connected to particle {}); does frame 0 "
+                      "show all of one object, without a hole?",
                       where, nearest, widest_spacing, outside[0], inside[0]));
     }
     // several springs, so that the joint is no hinge

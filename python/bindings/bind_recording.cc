@@ -82,9 +82,8 @@ std::vector<GivenRecording> LoadDataset(const std::vector<std::string>& paths,
 
 std::string ReprOfRecording(const GivenRecording& given) {
   const Recording& recording = given.recording;
-  const std::string seen = recording.point_count() > 0
-                               ? fmt::format("{} points", recording.point_count())
-                               : "clouds";
+  const std::string seen =
+      recording.point_count() > 0 ? fmt::format("{} points", recording.point_count()) : "clouds";
   return fmt::format(
       "<physpring.Recording '{}': {}, {} controllers, {} frames at {:.4g} fps, {:.4g} kg>",
       recording.name, seen, recording.controller_count(), recording.frame_count(), recording.fps,

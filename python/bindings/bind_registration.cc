@@ -4,6 +4,7 @@
 #include "jobs/registration.h"
 #include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
+#include "registration/placed_twin.h"
 #include "registration/register_markers.h"
 
 namespace physpring {
@@ -26,7 +27,7 @@ GivenRecording RegisterClouds(const GivenRecording& clouds, RegistrationOptions 
     ExpectPoints(like->recording, like->entry.path);
     options.like = like->recording;
   }
-  if (like_twin) options.like = KnownPointsOf(Checked(*like_twin), like_twin->path);
+  if (like_twin) options.like = ReferenceOf(Checked(*like_twin));
   CloudRegistration registration;
   RunWatched(callback, [&](const TellShare& tell) {
     registration = RegisterAsAsked(clouds.recording, options, tell);

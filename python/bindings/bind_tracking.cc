@@ -27,7 +27,7 @@ nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, d
   result["error"] = motion.errors.tracked;
   result["error_predicted"] = motion.errors.predicted;
   result["error_interpolated"] = motion.errors.interpolated;
-  result["cloud_distance"] = cloud ? motion.cloud.distance : std::nan("");
+  result["cloud_distance"] = motion.cloud ? motion.cloud->distance : std::nan("");
   result["frames_per_second"] = motion.frames_per_second;
   Warn(WarningsOf(motion));
   return result;

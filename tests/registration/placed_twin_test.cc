@@ -50,15 +50,16 @@ TEST_F(PlacedTwin, IsTrackedThroughClouds) {
     off += (motion.position[t] - elsewhere_.points[t]).colwise().norm().mean() / (kFrames - 1);
   }
   EXPECT_LT(off, 0.2 * kSpacing);
-  EXPECT_LT(motion.cloud.distance, motion.cloud.spacing);
+  EXPECT_LT(motion.cloud->distance, motion.cloud->spacing);
   EXPECT_TRUE(motion.hidden.empty());  // no point was measured that could judge
 }
 
 TEST_F(PlacedTwin, NeedsItsControllers) {
   Recording clouds = CloudsOf(elsewhere_, 2);
   for (Points& hands : clouds.controllers) hands = hands.leftCols(1).eval();
-  EXPECT_EQ(ErrorOf("recording turned", [&] { PlaceTwin(twin_, clouds); }),
-            "recording turned: has 1 controllers, but cloth has 2; expected recordings of one object");
+  EXPECT_EQ(
+      ErrorOf("recording turned", [&] { PlaceTwin(twin_, clouds); }),
+      "recording turned: has 1 controllers, but cloth has 2; expected recordings of one object");
 }
 
 }  // namespace

@@ -210,6 +210,14 @@ class SensorsTest(unittest.TestCase):
             np.testing.assert_allclose(surface[t, :len(cloud)], cloud, atol=1e-6)
             self.assertTrue(np.isnan(surface[t, len(cloud):]).all())
 
+    def test_numbers_in_names_count_as_numbers(self):
+        folder = self.root / "frames"
+        folder.mkdir()
+        for frame in range(8, 8 + FRAMES):
+            np.save(folder / f"cloud{frame}.npy", np.full((5, 3), 0.1 * frame))
+        arrays = self.convert("clouds", folder)
+        np.testing.assert_allclose(arrays["surface"][:, 0, 0], 0.1 * np.arange(8, 8 + FRAMES), atol=1e-6)
+
     def test_motion_capture(self):
         try:
             import ezc3d
@@ -245,6 +253,9 @@ class SensorsTest(unittest.TestCase):
         self.assertIn("has no images", self.refusal("tracks", "--view", file, absent, camera))
         self.assertIn("camera_to_world", self.refusal("tracks", "--view", file, depths, absent))
         broken = self.root / "broken.json"
+        broken.write_text(json.dumps(LENS))
+        self.assertIn("has no camera_to_world",
+                      self.refusal("tracks", "--view", file, depths, broken))
         broken.write_text(json.dumps({**LENS, "camera_to_world": np.diag([2.0, 2, 2, 1]).tolist()}))
         self.assertIn("not begin with a rotation",
                       self.refusal("tracks", "--view", file, depths, broken))

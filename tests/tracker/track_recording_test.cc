@@ -90,7 +90,7 @@ TEST_F(TrackedRope, FollowsACloudWithoutNames) {
   MakeClouds();
   const TrackedMotion motion = TrackRecording(TwinOf(system_), recording_, {.cloud = true});
   EXPECT_LT(OffTruth(motion), kOfNoise);
-  EXPECT_LT(motion.cloud.distance, motion.cloud.spacing);
+  EXPECT_LT(motion.cloud->distance, motion.cloud->spacing);
   const TrackedMotion pulled = TrackRecording(TwinOf(Wrong()), recording_, {.cloud = true});
   EXPECT_LT(pulled.errors.tracked, 0.5 * pulled.errors.predicted);
 }

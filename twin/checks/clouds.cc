@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twin/checks/clouds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "twin/checks/motion_scale.h"
+
+namespace physpring {
+namespace {
+
+constexpr double kLargest = 10, kSmallest = 1e-3;  // m, as plausibility.cc has it
+constexpr double kFalse = 0.05;  // of a cloud's points may be false, at either end of each axis
+constexpr double kBelowGround = 0.1, kFarGrasp = 0.75;  // sizes of the cloud
+
+bool IsPoint(const Points& cloud, Eigen::Index i) { return cloud.col(i).allFinite(); }
+
+// Along an axis of any length, the part of the cloud's points that lie lower.
+double Along(const Points& cloud, const Eigen::Vector3d& axis, double part) {
+  std::vector<double> values;
+  for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+    if (IsPoint(cloud, i)) values.push_back(axis.dot(cloud.col(i)));
+  }
+  return Quantile(part, std::move(values));
+}
+
+// Diagonal of the box around nearly all of its points, m.
+double SizeOf(const Points& cloud) {
+  Eigen::Vector3d extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);
+    extent[axis] = Along(cloud, unit, 1 - kFalse) - Along(cloud, unit, kFalse);
+  }
+  return extent.norm();
+}
+
+double DistanceTo(const Points& cloud, const Eigen::Vector3d& place) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+    if (IsPoint(cloud, i)) nearest = std::min(nearest, (cloud.col(i) - place).norm());
+  }
+  return nearest;
+}
+
+int FramesWithoutPoints(const std::vector<Points>& clouds) {
+  return static_cast<int>(std::count_if(clouds.begin(), clouds.end(), [](const Points& cloud) {
+    return !cloud.array().isFinite().any();
+  }));
+}
+
+}  // namespace
+
+std::string TakeZerosAsNone(const std::string& where, std::vector<Points>* clouds) {
+  const auto zeros = [](const Points& cloud) {
+    return (cloud.array() == 0).colwise().all().count();
+  };
+  if (std::none_of(clouds->begin(), clouds->end(),
+                   [&](const Points& cloud) { return zeros(cloud) > 1; })) {
+    return "";
+  }
+  Eigen::Index count = 0;
+  for (Points& cloud : *clouds) {
+    count += zeros(cloud);
+    for (auto point : cloud.colwise()) {
+      if (point.isZero(0)) point.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return fmt::format("{}: {} points are exactly at the origin, taken as none", where, count);
+}
+
+std::vector<std::string> FindOddClouds(const Recording& recording) {
+  std::vector<std::string> lines;
+  const int without = FramesWithoutPoints(recording.surface);
+  if (without > 0) {
+    lines.push_back(
+        fmt::format("{} of {} frames have no cloud", without, recording.surface.size()));
+  }
+  const Points& first = recording.surface[0];
+  if (!first.array().isFinite().any()) return lines;
+  const double size = SizeOf(first);
+  if (size > kLargest || size < kSmallest) {
+    lines.push_back(
+        fmt::format("the first cloud measures {:.3g} m: are positions in metres?", size));
+  }
+  if (recording.ground) {
+    const double height =
+        Along(first, recording.ground->head<3>(), kFalse) - (*recording.ground)[3];
+    if (height < -kBelowGround * size) {
+      lines.push_back(fmt::format("the object starts {:.3g} m below the ground", -height));
+    }
+  }
+  double farthest = 0;
+  for (const auto& hand : recording.controllers[0].colwise()) {
+    farthest = std::max(farthest, DistanceTo(first, hand));
+  }
+  if (farthest > kFarGrasp * size) {
+    lines.push_back(fmt::format(
+        "a controller is {:.3g} m from the first cloud, which measures {:.3g} m: are both in the "
+        "same coordinates?",
+        farthest, size));
+  }
+  return lines;
+}
+
+}  // namespace physpring

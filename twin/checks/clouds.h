@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether clouds of points without names can be what they are taken for.
+#ifndef PHYSPRING_TWIN_CHECKS_CLOUDS_H_
+#define PHYSPRING_TWIN_CHECKS_CLOUDS_H_
+
+#include <string>
+#include <vector>
+
+#include "twin/recording.h"
+
+namespace physpring {
+
+// Where frames have two or more points that are exactly at the origin, those fill an array up: they
+// become NaN in all frames. Returns what it did, one line that begins with `where`; empty if it did
+// nothing.
+std::string TakeZerosAsNone(const std::string& where, std::vector<Points>* clouds);
+
+// What is odd about the clouds of a recording without points, a line each: frames without any,
+// units, a ground above them, controllers far from them.
+std::vector<std::string> FindOddClouds(const Recording& recording);
+
+}  // namespace physpring
+
+#endif  // PHYSPRING_TWIN_CHECKS_CLOUDS_H_
