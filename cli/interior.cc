@@ -11,8 +11,10 @@
 #include "cli/output_files.h"
 #include "exporter/mesh_interior.h"
 #include "exporter/mesh_place.h"
+#include "exporter/mesh_samples.h"
 #include "twin/checks/objects.h"
 #include "twin/error.h"
+#include "twin/neighbours.h"
 #include "twin/recording.h"
 
 namespace physpring {
@@ -21,7 +23,7 @@ namespace {
 struct InteriorArguments {
   std::string recording, mesh, output;
   double spacing = 0.01;
-  bool force = false;
+  bool surface = false, force = false;
 };
 
 // Nobody knows the rest positions or arc lengths of new particles.
@@ -55,6 +57,19 @@ void AddInterior(const Points& interior, Recording* recording) {
   recording->velocity = velocity;
 }
 
+// As far apart as the points are.
+Points OnBareSurface(const TriangleMesh& mesh, const Recording& recording) {
+  const Points points = recording.start.leftCols(recording.point_count());
+  if (points.cols() < 2) throw Error("recording " + recording.name + ": has one point only");
+  return SampleBare(mesh, MedianSpacing(points), recording.start);
+}
+
+Points SideBySide(const Points& some, const Points& others) {
+  Points all(3, some.cols() + others.cols());
+  all << some, others;
+  return all;
+}
+
 void Run(const InteriorArguments& arguments) {
   ExpectOutputs({arguments.output}, {arguments.recording, arguments.mesh});
   ExpectNew(arguments.output, arguments.force);
@@ -63,17 +78,22 @@ void Run(const InteriorArguments& arguments) {
   const PlacedMesh placed =
       ReadMeshAt(arguments.mesh, recording.start.leftCols(recording.point_count()));
   for (const std::string& warning : placed.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  const Points interior = SampleInterior(placed.mesh, arguments.spacing, recording.start);
-  if (interior.cols() == 0) {
+  Points on_surface(3, 0);
+  if (arguments.surface) on_surface = OnBareSurface(placed.mesh, recording);
+  const Points inside =
+      SampleInterior(placed.mesh, arguments.spacing, SideBySide(recording.start, on_surface));
+  if (inside.cols() + on_surface.cols() == 0) {
     throw Error(
         fmt::format("{}: no point of a lattice of {} m is inside; a smaller --spacing or a "
                     "closed mesh is needed",
                     arguments.mesh, arguments.spacing));
   }
-  AddInterior(interior, &recording);
+  AddInterior(SideBySide(on_surface, inside), &recording);
   WriteRecording(recording, arguments.output);
-  fmt::print("{}: {} points, {} interior, {} controllers\n", arguments.output,
-             recording.point_count(), recording.interior_count(), recording.controller_count());
+  fmt::print("{}: {} points, {} interior{}, {} controllers\n", arguments.output,
+             recording.point_count(), recording.interior_count(),
+             arguments.surface ? fmt::format(" ({} on the surface)", on_surface.cols()) : "",
+             recording.controller_count());
 }
 
 }  // namespace
@@ -93,10 +113,13 @@ void AddInteriorCommand(CLI::App& app) {
                    "glTF is turned from y up to z up")
       ->required()
       ->type_name("FILE");
-  command->add_option("--spacing", arguments->spacing, "of the particles")
+  command->add_option("--spacing", arguments->spacing, "of the particles inside")
       ->check(NumberBetween(1e-6, 10))
       ->type_name("METRES")
       ->capture_default_str();
+  command->add_flag("--surface", arguments->surface,
+                    "also on the surface where no point is, as on the side that a camera does not "
+                    "see");
   command->add_option("-o,--output", arguments->output, "recording to write")
       ->required()
       ->check(FileNameWith(".npz"))

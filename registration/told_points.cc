@@ -17,7 +17,8 @@ constexpr double kNone = 0.05, kFewestPoints = 0.3;
 }  // namespace
 
 RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points>& position) {
-  RegisteredClouds registered{recording};
+  RegisteredClouds registered;
+  registered.recording = recording;
   const double width = MatchWidth(position[0]);
   double seen = 0, all = 0;
   std::optional<int> lost_from;

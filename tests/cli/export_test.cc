@@ -181,6 +181,32 @@ TEST_F(Export, InteriorFillsAMesh) {
                         "has an array 'interior'"));
 }
 
+// The camera sees the lower half of the block.
+TEST_F(Export, InteriorIsOnTheSurfaceThatNoPointIsOn) {
+  Recording recording = WithoutInterior();
+  for (Points* points : {&recording.start, &recording.rest}) {
+    *points = (Points(3, 22) << points->leftCols(20), points->rightCols(2)).finished();
+  }
+  for (Points& frame : recording.points) frame = Points(frame.leftCols(20));
+  recording.velocity = Points::Zero(3, 20);
+  WriteRecording(recording, folder_.File("half.npz"));
+  WriteObj(Box(), folder_.File("box.obj"));
+  const auto fill = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"interior",  folder_.File("half.npz"),
+                                   "--mesh",    folder_.File("box.obj"),
+                                   "--spacing", "0.02",
+                                   "-o",        folder_.File(name)};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(RunProgram(words).status, 0);
+    return ReadRecording(folder_.File(name)).interior;
+  };
+  const Points inside = fill("inside.npz", {}), all = fill("all.npz", {"--surface"});
+  const auto on_top = [](const Points& points) { return (points.row(2).array() > 0.024).count(); };
+  EXPECT_EQ(on_top(inside), 0);
+  EXPECT_GT(on_top(all), 8);
+  EXPECT_EQ(on_top(-all), 0);  // the points cover the bottom
+}
+
 TEST_F(Export, InteriorIsWhereThePointsAreWhateverTheMeshsFrame) {
   WriteRecording(WithoutInterior(), folder_.File("swing.npz"));
   TriangleMesh mesh = Box();

@@ -37,6 +37,22 @@ TEST(MeshSamples, AreTheSameEachTime) {
   EXPECT_EQ(SampleSurface(Squares(), 50), SampleSurface(Squares(), 50));
 }
 
+// The large square has points 0.1 apart, the small one none.
+TEST(MeshSamples, AreAddedWhereNoneAre) {
+  Points taken(3, 121);
+  for (int i = 0; i < 121; ++i) taken.col(i) << 0.1 * (i % 11), 0.1 * (i / 11), 0;
+  const Points bare = SampleBare(Squares(), 0.12, taken);
+  EXPECT_GT(bare.cols(), 12);
+  EXPECT_LT(bare.cols(), 40);
+  EXPECT_TRUE((bare.row(2).array() == 1).all());
+  for (int i = 0; i < bare.cols(); ++i) {
+    for (int j = 0; j < i; ++j) EXPECT_GT((bare.col(i) - bare.col(j)).norm(), 0.12);
+  }
+  EXPECT_EQ(SampleBare(Squares(), 0.12, taken), bare);
+  EXPECT_EQ(ErrorOf("the mesh", [&] { SampleBare(Squares(), 1e-3, taken); }),
+            "the mesh: its surface has room for 1.2e+06 points 0.001 m apart, more than 1e+04");
+}
+
 TEST(MeshSamples, NeedAnArea) {
   TriangleMesh mesh = Squares();
   mesh.vertices.colwise() = Eigen::Vector3d(1, 2, 3);
