@@ -88,7 +88,7 @@ std::vector<std::string> WarningsOfSamples(const Twin& twin) {
   const std::vector<std::string> untold = UntoldOf(*twin.material);
   if (untold.empty()) return {};
   return {
-      fmt::format("the recordings do not tell to a factor of 2: {}; the truth may be further off "
+      fmt::format("uncertain by more than a factor of 2: {}; the truth may be further off "
                   "than the samples",
                   fmt::join(untold, ", "))};
 }

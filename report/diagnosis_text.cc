@@ -115,11 +115,12 @@ std::string DescribeResidual(const Diagnosis& diagnosis) {
   std::string text = "missing force on a node: " + force(before, changed ? " before" : "");
   if (changed) text += ", " + force(diagnosis.residual_after, " after");
   if (before.root_mean_square == 0 || !before.converged) return text;
-  return text + fmt::format(
-                    "; {}{:.0f} % of its square one acceleration, cosine with the velocity {:.2f}, "
-                    "with the stretch {:.2f}",
-                    changed ? "before " : "", 100 * before.constant, before.with_velocity,
-                    before.with_stretch);
+  return text +
+         fmt::format(
+             "; {}{:.0f} % of its square is one acceleration of all nodes, and its cosine is "
+             "{:.2f} with the velocity, {:.2f} with the stretch",
+             changed ? "before " : "", 100 * before.constant, before.with_velocity,
+             before.with_stretch);
 }
 
 std::string DescribeRecordings(const Diagnosis& diagnosis) {

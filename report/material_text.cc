@@ -62,8 +62,8 @@ std::string DescribeMaterial(const Material& material) {
                       Words(material.stiffest));
   const std::vector<std::string> untold = UntoldOf(material);
   if (untold.empty()) return text;
-  return text + fmt::format("  these recordings do not tell to a factor of 2: {}\n",
-                            fmt::join(untold, ", "));
+  return text +
+         fmt::format("  uncertain by more than a factor of 2: {}\n", fmt::join(untold, ", "));
 }
 
 }  // namespace physpring

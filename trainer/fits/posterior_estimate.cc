@@ -290,7 +290,7 @@ StepReport Estimator::Step(Covariances* covariances) const {
   ++covariances->rounds;
   const Posterior posterior = PosteriorOf(covariances->independent, slopes_, kMostOfSamples);
   return {covariances->rounds > kRounds, static_cast<double>(covariances->rounds) / (kRounds + 1),
-          fmt::format("posterior: half of the stiffnesses are known to {:.2g} %",
+          fmt::format("posterior: half of the stiffnesses are known to within {:.2g} %",
                       100 * MedianDeviation(posterior))};
 }
 
