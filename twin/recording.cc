@@ -70,13 +70,12 @@ void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording
   }
 }
 
-// Then nothing else may be said of points that are followed.
+// Whether nothing is said of points that are followed.
 bool HasCloudsAlone(const NpzFields& fields) {
-  if (fields.Has("points") || !fields.Has("surface")) return false;
-  for (const char* name : {"interior", "rest", "velocity", "order", "rod", "object"}) {
-    if (fields.Has(name)) fields.Fail(name, "is of 'points', which are missing");
-  }
-  return true;
+  constexpr std::array kOfPoints{"points", "interior", "rest",  "velocity",
+                                 "order",  "rod",      "object"};
+  return fields.Has("surface") && std::none_of(kOfPoints.begin(), kOfPoints.end(),
+                                               [&](const char* name) { return fields.Has(name); });
 }
 
 std::vector<Points> ReadClouds(NpzFields& fields, const std::string& path, Recording& recording) {
