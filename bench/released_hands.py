@@ -5,8 +5,8 @@
 For each body it writes NAME_fit.npz and NAME_other.npz, two motions of one body in the simulator of
 clean_networks.py. Two hands hold it. The second one opens after a second and takes hold at another
 place, nearer to the middle, after two. Its springs there begin with the lengths of that moment, as
-`physpring` takes them. `physpring train NAME_fit.npz` and `eval` of the twin on NAME_other.npz give the
-errors; noise alone makes 1.12 mm.
+`physpring` takes them. NAME_true.twin.npz is the body itself. `physpring train NAME_fit.npz` and `eval` of
+the twin on NAME_other.npz give the errors; `eval` of the true twin gives those that noise alone makes.
 """
 import argparse
 import pathlib
@@ -68,6 +68,13 @@ def with_another_grasp(system):
                          for name, more in joined.items()}}, held
 
 
+def write_true_twin(path, body, system):
+    both, _ = with_another_grasp(system)
+    clean_networks.write_true_twin(path, body, both)
+    with np.load(path) as arrays:
+        np.savez(path, **arrays, late=(both["owner"] == 2).astype(np.int32))
+
+
 def write_motion(path, body, system, seeds, amplitude, random):
     paths = [lambda time, seed=seed: clean_networks.hand_path(
         time, np.random.default_rng(seed), amplitude) for seed in seeds]
@@ -80,7 +87,7 @@ def write_motion(path, body, system, seeds, amplitude, random):
     hands[np.ix_(again, np.flatnonzero(owner == 1))] = controllers[np.ix_(again,
                                                                           np.flatnonzero(owner == 2))]
     holds = np.ones(hands.shape[:2], bool)
-    holds[np.ix_((time >= OPENS) & (time < CLOSES), np.flatnonzero(owner[owner < 2] == 1))] = False
+    holds[np.ix_((time > OPENS) & (time < CLOSES), np.flatnonzero(owner[owner < 2] == 1))] = False
     clean_networks.write_recording(path, body, points, hands, random)
     with np.load(path) as arrays:
         np.savez(path, **arrays, held=holds, train_frames=int(0.8 * len(points)))
@@ -101,6 +108,7 @@ def main():
             continue
         random = np.random.default_rng([args.seed, number])
         system = clean_networks.system_of(body, random)
+        write_true_twin(args.output / f"{name}_true.twin.npz", body, system)
         for motion in ("fit", "other"):
             points = write_motion(args.output / f"{name}_{motion}.npz", body, system,
                                   random.integers(1 << 30, size=2), args.amplitude, random)
