@@ -33,8 +33,8 @@ constexpr double kStiffer = 1.5;     // each further body, in sub-steps
 constexpr double kMostStretch = 0.01, kStretchesToo = 0.9;
 
 struct FollowedMotion {
-  std::vector<Points> position;  // T frames of 3 x particles, m
-  double stretch = 0;            // exceeded in a tenth of the frames
+  std::vector<Points> position;  // T frames of 3 x particles, m; fewer of one that diverges
+  double stretch = 0;            // exceeded in a tenth of the frames; infinite of one that diverges
 };
 
 // By which the body's springs are longer than in the beginning, on average. Those that bending
@@ -69,9 +69,9 @@ FollowedMotion FollowWith(const Recording& recording, int substeps) {
     tracker.Advance(RecordedInput(recording, frame, 0), measured);
     motion.position.push_back(tracker.best().position());
     if (!motion.position.back().allFinite()) {
-      throw Error(
-          fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
-                      recording.name, frame));
+      motion.position.pop_back();
+      motion.stretch = std::numeric_limits<double>::infinity();
+      return motion;
     }
     stretches.push_back(StretchOf(system, motion.position.back()));
   }
@@ -120,6 +120,11 @@ double MatchWidth(const Points& start) {
 
 std::vector<Points> FollowClouds(const Recording& recording) {
   FollowedMotion motion = FollowWith(recording, kSubsteps);
+  if (std::isinf(motion.stretch)) {
+    throw Error(
+        fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
+                    recording.name, motion.position.size()));
+  }
   for (double substeps = kStiffer * kSubsteps;
        motion.stretch > kMostStretch && substeps <= kMostSubsteps; substeps *= kStiffer) {
     FollowedMotion stiffer = FollowWith(recording, static_cast<int>(substeps));
