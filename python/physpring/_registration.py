@@ -45,7 +45,7 @@ def register(clouds: RecordingLike,
         raise _core.Error("points are like's; expected one of them")
     if rod and not markers:
         raise _core.Error('rod is of markers; expected markers=True')
-    if markers and (refine or not points is like is shape is None):
+    if markers and (refine or any(one is not None for one in (points, like, shape))):
         raise _core.Error('markers are points already; expected no points, like, shape or refine')
     given = one_recording(clouds, 'fit')
     if markers:

@@ -14,17 +14,16 @@ def clouds_of(recording):
                                            controllers=recording.controllers)
 
 
-def test_clouds_are_a_recording_without_points(recording, tmp_path):
+def test_clouds_are_a_recording_without_points(twin, recording, tmp_path):
     clouds = clouds_of(recording)
     assert clouds.points.shape == (len(recording), 0, 3)
     assert 'clouds' in repr(clouds)
     clouds.save(tmp_path / 'clouds.npz')
     assert physpring.Recording.load(tmp_path / 'clouds.npz').hash == clouds.hash
-    for use in (physpring.train, lambda one: physpring.evaluate('no.twin.npz', one)):
-        with pytest.raises(physpring.Error):
+    for use in (physpring.train, lambda one: physpring.evaluate(twin, one),
+                lambda one: physpring.diagnose(twin, one)):
+        with pytest.raises(physpring.Error, match="no 'points'; `physpring register` makes points"):
             use(clouds)
-    with pytest.raises(physpring.Error, match="no 'points'; `physpring register` makes points"):
-        physpring.train(clouds)
 
 
 def test_is_the_programs(recording, tmp_path):
@@ -59,9 +58,8 @@ def test_a_twin_says_where_the_points_are(twin, recording):
 def test_markers(recording, tmp_path):
     clouds = clouds_of(recording)
     clouds.save(tmp_path / 'markers.npz')
-    run_program('register', tmp_path / 'markers.npz', '--markers', '--rod', '-o',
-                tmp_path / 'chain.npz')
-    chain = physpring.register(clouds, markers=True, rod=True)
+    run_program('register', tmp_path / 'markers.npz', '--markers', '-o', tmp_path / 'chain.npz')
+    chain = physpring.register(clouds, markers=True)
     assert chain.hash == physpring.Recording.load(tmp_path / 'chain.npz').hash
 
 
