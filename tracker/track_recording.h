@@ -39,7 +39,7 @@ struct TrackedMotion {
   std::vector<int> hidden;       // the points that were not told, and judged by
   TrackErrors errors;
   std::optional<CloudFit> cloud;  // of clouds that were followed
-  double frames_per_second = 0;  // of processor time, by one thread
+  double frames_per_second = 0;   // of processor time, by one thread
 };
 
 // How far each point of a cloud is from the nearest of `nodes` (3 x nodes), m; columns of NaN are

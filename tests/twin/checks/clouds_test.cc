@@ -57,9 +57,10 @@ TEST(Clouds, AreBelowTheGround) {
 TEST(Clouds, AreFarFromTheHands) {
   Recording sheet = Sheet();
   for (Points& hands : sheet.controllers) hands(2, 1) += 1;
-  EXPECT_THAT(FindOddClouds(sheet),
-              ElementsAre("a controller is 1 m from the first cloud, which measures 0.5 m: are both "
-                          "in the same coordinates?"));
+  EXPECT_THAT(
+      FindOddClouds(sheet),
+      ElementsAre("a controller is 1 m from the first cloud, which measures 0.5 m: are both "
+                  "in the same coordinates?"));
 }
 
 TEST(Clouds, AreFilledUpWithZeros) {
