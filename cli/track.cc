@@ -34,9 +34,10 @@ void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
   const auto print = [](const char* what, double metres) {
     if (std::isfinite(metres)) fmt::print("  {:<42} {:>8.2f} mm\n", what, 1e3 * metres);
   };
-  if (motion.cloud && std::isfinite(motion.cloud->distance)) {
-    fmt::print("clouds are {:.1f} mm from the nearest particles, mean of the last second\n",
-               1e3 * motion.cloud->distance);
+  if (motion.cloud) {
+    fmt::print("clouds are from the nearest particles, mean of the last second:\n");
+    print("tracked", motion.cloud->distance);
+    print("predicted from frame 0, nothing measured", motion.predicted_cloud_distance);
   }
   if (motion.hidden.empty()) {
     fmt::print("no point was {}\n", arguments.options.cloud

@@ -32,6 +32,9 @@ std::vector<std::string> WarningsOf(const TrackedMotion& motion) {
                     "which are {:.1f} mm apart",
                     1e3 * motion.cloud->distance, 1e3 * motion.cloud->spacing));
   }
+  if (motion.cloud && motion.cloud->distance > kWorse * motion.predicted_cloud_distance) {
+    warnings.emplace_back("the prediction without any measurement is nearer to the clouds");
+  }
   if (errors.tracked > kWorse * errors.predicted) {
     warnings.emplace_back("measurements make it worse than the prediction without any");
   }

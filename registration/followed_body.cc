@@ -89,6 +89,33 @@ Points MoveWithNeighbours(const Points& from, const Points& to) {
   return moved;
 }
 
+// The known particles, moved as a rigid body with the controllers, then within a second as a soft
+// body with the controllers and the first cloud. `bears`: the known shape bears its weight already,
+// so it stays where the cloud shows nothing. Else it hangs anew, as in another shape it would.
+Points PulledOver(const Recording& known, const Recording& clouds, bool bears) {
+  constexpr int kFrames = 50;  // of the second
+  const Points& there = clouds.controllers[0];
+  Points start = known.start.leftCols(known.particle_count()), hands = known.controllers[0];
+  if (there.cols() > 0) {
+    start = MoveRigidly(known.controllers[0], there, start);
+    hands = MoveRigidly(known.controllers[0], there, hands);
+  }
+  Points at_rest(3, start.cols() + hands.cols());
+  at_rest << start, hands;
+  Recording way = WithParticles(clouds, start, bears ? at_rest : known.rest);
+  way.start = at_rest;
+  way.fps = kFrames;
+  if (bears) way.gravity.setZero();
+  way.points.resize(kFrames + 1, Points::Constant(3, start.cols(), std::nan("")));
+  way.surface.assign(kFrames + 1, clouds.surface[0]);
+  way.held.resize(0, 0);
+  way.controllers.clear();
+  for (int t = 0; t <= kFrames; ++t) {
+    way.controllers.emplace_back(hands + t / static_cast<double>(kFrames) * (there - hands));
+  }
+  return MoveWithNeighbours(start, FollowClouds(way).back());
+}
+
 }  // namespace
 
 Recording WithParticles(const Recording& clouds, const Points& start, const Points& rest,
@@ -141,31 +168,21 @@ Points CarryOver(const Recording& known, const Recording& clouds) {
                     "object",
                     clouds.name, clouds.controller_count(), known.name, known.controller_count()));
   }
-  const Points& there = clouds.controllers[0];
-  Points start = known.start.leftCols(known.particle_count()), hands = known.controllers[0];
-  if (there.cols() > 0) {
-    start = MoveRigidly(known.controllers[0], there, start);
-    hands = MoveRigidly(known.controllers[0], there, hands);
+  const auto off = [&](const Points& start) {
+    return UsualDistance(DistancesToNearest(start, clouds.surface[0]));
+  };
+  Points start = PulledOver(known, clouds, true);
+  const double most = kLostWidths * MatchWidth(start);
+  if (off(start) > most) {
+    const Points other = PulledOver(known, clouds, false);
+    if (off(other) < off(start)) start = other;
   }
-  const auto frames = static_cast<std::size_t>(std::ceil(clouds.fps)) + 1;
-  Recording way = WithParticles(clouds, start, known.rest);
-  way.start.rightCols(there.cols()) = hands;
-  way.points.resize(frames, Points::Constant(3, start.cols(), std::nan("")));
-  way.surface.assign(frames, clouds.surface[0]);
-  way.held.resize(0, 0);
-  way.controllers.clear();
-  for (std::size_t t = 0; t < frames; ++t) {
-    const double part = static_cast<double>(t) / static_cast<double>(frames - 1);
-    way.controllers.emplace_back(hands + part * (there - hands));
-  }
-  start = MoveWithNeighbours(start, FollowClouds(way).back());
-  const double off = UsualDistance(DistancesToNearest(start, clouds.surface[0]));
-  if (!(off > kLostWidths * MatchWidth(start))) return start;
+  if (!(off(start) > most)) return start;
   throw Error(
       fmt::format("recording {}: its first cloud is {:.1f} mm from where the points of {} come to "
                   "be, which are "
                   "{:.1f} mm apart: is it another object, or does it start in another shape?",
-                  clouds.name, 1e3 * off, known.name, 1e3 * MedianSpacing(start)));
+                  clouds.name, 1e3 * off(start), known.name, 1e3 * MedianSpacing(start)));
 }
 
 }  // namespace physpring

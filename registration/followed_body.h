@@ -33,8 +33,9 @@ std::vector<Points> FollowClouds(const Recording& recording);
 
 // The particles of another recording of the object, where they are in frame 0 of the clouds: moved
 // there as a rigid body with the controllers, then within a second with the controllers and the
-// first cloud. 3 x particles, m, interior ones included. Throws Error as FollowClouds does, where
-// the numbers of controllers differ, and where the first cloud is not where that has brought them.
+// first cloud. What the cloud does not show stays, if the known shape is near the one there. 3 x
+// particles, m, interior ones included. Throws Error as FollowClouds does, where the numbers of
+// controllers differ, and where the first cloud is not where that has brought them.
 Points CarryOver(const Recording& known, const Recording& clouds);
 
 }  // namespace physpring

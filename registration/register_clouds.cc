@@ -17,10 +17,11 @@ namespace {
 
 constexpr double kPerSeen = 1.5;       // points, by the points of a cloud
 constexpr double kPerSeenOfShape = 3;  // the same where a cloud may show half of the object
-constexpr int kFewestSeen = 8;         // points of the first cloud
-constexpr double kRoughPart = 0.6;     // of the points, while the shape is hardly known
-constexpr int kFramesOfShape = 40;     // whose clouds are carried back
-constexpr int kMostPerPoint = 16;      // carried back, by the points of the rough body
+constexpr int kMostPerSeen = 4;
+constexpr int kFewestSeen = 8;      // points of the first cloud
+constexpr double kRoughPart = 0.6;  // of the points, while the shape is hardly known
+constexpr int kFramesOfShape = 40;  // whose clouds are carried back
+constexpr int kMostPerPoint = 16;   // carried back, by the points of the rough body
 constexpr double kFarFromRough =
     1.5;  // spacings: what is carried back farther away is not the body
 
@@ -41,8 +42,12 @@ int PointsOfACloud(const std::vector<Points>& clouds) {
 // Error where they make no body.
 int PointsToMake(const Recording& clouds, int points, double per_seen) {
   ExpectSeen(clouds, kFewestSeen);
-  if (points == 0) {
-    points = std::min(kMostMadePoints, static_cast<int>(per_seen * PointsOfACloud(clouds.surface)));
+  const int seen = PointsOfACloud(clouds.surface);
+  if (points == 0) points = std::min(kMostMadePoints, static_cast<int>(per_seen * seen));
+  if (points > kMostPerSeen * seen) {
+    throw Error(fmt::format(
+        "recording {}: its clouds have {} points, which do not tell of {}; expected {} or fewer",
+        clouds.name, seen, points, kMostPerSeen * seen));
   }
   ExpectEnough(clouds, points, kFewestSeen);
   return points;

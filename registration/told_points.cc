@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "registration/told_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +15,17 @@ constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that
 // as soft_match.h names it; the fewest points of a cloud that tell of a particle
 constexpr double kNone = 0.05, kFewestPoints = 0.3;
 
+// The first frame from which on, to the end, more of the frames are lost than found.
+int LostFrom(const std::vector<int>& lost, const std::vector<int>& found) {
+  for (int frame : lost) {
+    const auto from = [&](const std::vector<int>& frames) {
+      return frames.end() - std::lower_bound(frames.begin(), frames.end(), frame);
+    };
+    if (from(lost) > from(found)) return frame;
+  }
+  return lost.empty() ? 1 : lost.back();
+}
+
 }  // namespace
 
 RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points>& position) {
@@ -21,7 +33,7 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
   registered.recording = recording;
   const double width = MatchWidth(position[0]);
   double seen = 0, all = 0;
-  std::optional<int> lost_from;
+  std::vector<int> lost, found;  // frames
   for (std::size_t t = 1; t < position.size(); ++t) {
     Points& points = registered.recording.points[t];
     points.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -36,14 +48,14 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
     all += static_cast<double>(points.cols());
     const double distance = UsualDistance(DistancesToNearest(position[t], recording.surface[t]));
     if (std::isnan(distance)) continue;  // no cloud
-    const bool lost = distance > kLostWidths * width ||
-                      seen_now < kFewestTold * static_cast<double>(points.cols());
-    if (!lost) lost_from.reset();
-    if (lost && !lost_from) lost_from = static_cast<int>(t);
+    const bool is_lost = distance > kLostWidths * width ||
+                         seen_now < kFewestTold * static_cast<double>(points.cols());
+    (is_lost ? lost : found).push_back(static_cast<int>(t));
   }
   registered.seen = seen / all;
   registered.fit = FitOfClouds(position, recording);
-  registered.lost_from = lost_from;
+  const bool in_the_end = registered.fit.distance > kLostWidths * width;
+  if (in_the_end || registered.seen < kFewestTold) registered.lost_from = LostFrom(lost, found);
   return registered;
 }
 

@@ -17,8 +17,8 @@ struct RegisteredClouds {
   Recording recording;
   double seen = 0;  // the part of all points in all frames after frame 0 that clouds tell of
   CloudFit fit;     // of the points where they are followed to
-  // The frame from which on, to the end, the clouds are not where the points are, or tell of hardly
-  // any of them.
+  // The frame from which on, to the end, clouds mostly are not where the points are, or tell of
+  // hardly any of them.
   std::optional<int> lost_from;
   int outliers = 0;  // points of the first cloud that were left out
 };

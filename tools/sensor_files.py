@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays, folders of images and 2-D tracks from files. Imported by sensors_to_npz.py."""
 
+import decimal
 import pathlib
 import re
 import zipfile
@@ -37,11 +38,12 @@ def array_of_npz(path, names, what):
 
 
 def files_in(folder, *endings):
-    """Files of a folder with these endings, in the order of their names: 9.npy comes before 10.npy,
-    and 0009.npy before 0010.npy."""
+    """Files of a folder with these endings, in the order of their names, in which numbers are numbers:
+    9.npy comes before 10.npy, and 1.02.npy before 1.1.npy."""
     def place(path):
-        return [(int(part), "") if part.isdecimal() else (-1, part)
-                for part in re.split(r"([0-9]+)", path.name)], path.name
+        parts = re.split(r"([0-9]+(?:\.[0-9]+)?)", path.stem)  # every other one is a number
+        return [(part, 0) if i % 2 == 0 else ("", decimal.Decimal(part))
+                for i, part in enumerate(parts)], path.name
     return sorted((path for path in pathlib.Path(folder).glob("*")
                    if path.suffix.lower() in endings), key=place)
 

@@ -112,14 +112,12 @@ double ErrorOf(const std::vector<Points>& position, const Recording& recording,
   return sum / count;
 }
 
-// Of a motion that diverges without measurements, none.
-double PredictionError(const Twin& twin, const Recording& recording,
-                       const std::vector<int>& hidden) {
-  if (hidden.empty()) return kNotSeen;
+// Without measurements; none where that motion diverges.
+std::vector<Points> PredictedOrNone(const Twin& twin, const Recording& recording) {
   try {
-    return ErrorOf(Predict(twin, 0, recording, {}), recording, hidden);
+    return Predict(twin, 0, recording, {});
   } catch (const Error&) {
-    return kNotSeen;
+    return {};
   }
 }
 
@@ -139,6 +137,11 @@ double InterpolationError(const Recording& recording, const std::vector<int>& hi
 void ExpectSomethingToFollow(const Recording& recording, const TrackOptions& options) {
   if (options.cloud && recording.surface.empty()) {
     throw Error(fmt::format("recording {}: has no 'surface' to follow", recording.name));
+  }
+  if (options.cloud &&
+      std::none_of(recording.surface.begin(), recording.surface.end(),
+                   [](const Points& cloud) { return cloud.array().isFinite().any(); })) {
+    throw Error(fmt::format("recording {}: has no point in 'surface'", recording.name));
   }
 }
 
@@ -203,10 +206,14 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   motion.frames_per_second = (recording.frame_count() - 1) / elapsed.count();
-  motion.errors = {ErrorOf(motion.position, recording, motion.hidden),
-                   PredictionError(twin, recording, motion.hidden),
+  motion.errors = {ErrorOf(motion.position, recording, motion.hidden), kNotSeen,
                    options.cloud ? kNotSeen : InterpolationError(recording, motion.hidden)};
   if (options.cloud) motion.cloud = FitOfClouds(motion.position, recording);
+  if (motion.hidden.empty() && !options.cloud) return motion;
+  const std::vector<Points> predicted = PredictedOrNone(twin, recording);
+  if (predicted.empty()) return motion;
+  motion.errors.predicted = ErrorOf(predicted, recording, motion.hidden);
+  if (options.cloud) motion.predicted_cloud_distance = FitOfClouds(predicted, recording).distance;
   return motion;
 }
 

@@ -5,6 +5,7 @@
 #define PHYSPRING_TRACKER_TRACK_RECORDING_H_
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -39,7 +40,10 @@ struct TrackedMotion {
   std::vector<int> hidden;       // the points that were not told, and judged by
   TrackErrors errors;
   std::optional<CloudFit> cloud;  // of clouds that were followed
-  double frames_per_second = 0;   // of processor time, by one thread
+  // The same distance of the twin's motion from frame 0 on, without any measurement, m; NaN without
+  // clouds, and where that motion diverges.
+  double predicted_cloud_distance = std::numeric_limits<double>::quiet_NaN();
+  double frames_per_second = 0;  // of processor time, by one thread
 };
 
 // How far each point of a cloud is from the nearest of `nodes` (3 x nodes), m; columns of NaN are

@@ -42,6 +42,24 @@ TEST_F(PlacedTwin, IsWhereTheObjectIsInFrame0) {
   EXPECT_TRUE(placed.points[1].array().isNaN().all());
 }
 
+// At five frames a second, too, and where the first cloud shows one half, or nothing.
+TEST_F(PlacedTwin, StaysWhereTheFirstCloudShowsNothing) {
+  Recording clouds = CloudsOf(elsewhere_, 2);
+  clouds.fps = 5;
+  const auto off = [&] {
+    const Points start = PlaceTwin(twin_, clouds).start.leftCols(twin_.points + kInterior);
+    return (start - elsewhere_.points[0]).colwise().norm().maxCoeff();
+  };
+  Points& first = clouds.surface[0];
+  const double middle = first.row(0).mean();
+  for (auto point : first.colwise()) {
+    if (point[0] > middle) point.setConstant(std::nan(""));
+  }
+  EXPECT_LT(off(), 0.2 * kSpacing);
+  first.setConstant(std::nan(""));
+  EXPECT_LT(off(), 1e-3 * kSpacing);
+}
+
 TEST_F(PlacedTwin, IsTrackedThroughClouds) {
   const Recording placed = PlaceTwin(twin_, CloudsOf(elsewhere_, 2));
   const TrackedMotion motion = TrackRecording(twin_, placed, {.cloud = true});

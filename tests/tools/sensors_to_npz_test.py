@@ -218,6 +218,15 @@ class SensorsTest(unittest.TestCase):
         arrays = self.convert("clouds", folder)
         np.testing.assert_allclose(arrays["surface"][:, 0, 0], 0.1 * np.arange(8, 8 + FRAMES), atol=1e-6)
 
+    def test_numbers_in_names_may_be_times(self):
+        folder = self.root / "frames"
+        folder.mkdir()
+        times = ["9.0", "9.02", "9.1", "10", "10.05"]
+        for frame, time in enumerate(times):
+            np.save(folder / f"at_{time}.npy", np.full((5, 3), 0.1 * frame))
+        arrays = self.convert("clouds", folder)
+        np.testing.assert_allclose(arrays["surface"][:, 0, 0], 0.1 * np.arange(FRAMES), atol=1e-6)
+
     def test_motion_capture(self):
         try:
             import ezc3d

@@ -45,8 +45,14 @@ void CheckUnits(const Recording& recording, const MotionScale& scale, Lines* lin
   }
 }
 
+bool KnownAtStartAlone(const Recording& recording) {
+  return std::none_of(recording.points.begin() + 1, recording.points.end(),
+                      [](const Points& frame) { return frame.array().isFinite().any(); });
+}
+
 void CheckMotion(const Recording& recording, const MotionScale& scale, Lines* lines) {
   if (scale.motion > kMoves * std::sqrt(3.0) * scale.noise && scale.motion > kLeastMotion) return;
+  if (!recording.surface.empty() && KnownAtStartAlone(recording)) return;  // clouds may move
   const double hands = MotionOfControllers(recording);
   const bool held_still = hands < 2 * scale.motion;
   lines->push_back(fmt::format(
