@@ -92,7 +92,7 @@ void AddTrackCommand(CLI::App& app) {
                             ->type_name("STATES.npz");
   CLI::Option* cloud = command->add_flag("--cloud", arguments->options.cloud,
                                          "follow the recording's `surface`, points without names, "
-                                         "and judge by its points");
+                                         "and judge by its points, if it has any");
   CLI::Option* hide = command
                           ->add_option("--hide", arguments->options.hide,
                                        "hide this part of the points, and judge by them")

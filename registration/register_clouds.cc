@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kPerSeen = 1.5;       // points, by the points of a cloud
 constexpr double kPerSeenOfShape = 3;  // the same where a cloud may show half of the object
-constexpr int kMostPerSeen = 4;
-constexpr int kFewestSeen = 8;      // points of the first cloud
-constexpr double kRoughPart = 0.6;  // of the points, while the shape is hardly known
-constexpr int kFramesOfShape = 40;  // whose clouds are carried back
-constexpr int kMostPerPoint = 16;   // carried back, by the points of the rough body
+constexpr int kMostPerSeen = 4;        // points that may be made, by the points of a cloud
+constexpr int kFewestSeen = 8;         // points of the first cloud
+constexpr double kRoughPart = 0.6;     // of the points, while the shape is hardly known
+constexpr int kFramesOfShape = 40;     // whose clouds are carried back
+constexpr int kMostPerPoint = 16;      // carried back, by the points of the rough body
 constexpr double kFarFromRough =
     1.5;  // spacings: what is carried back farther away is not the body
 

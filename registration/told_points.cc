@@ -15,7 +15,7 @@ constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that
 // as soft_match.h names it; the fewest points of a cloud that tell of a particle
 constexpr double kNone = 0.05, kFewestPoints = 0.3;
 
-// The first frame from which on, to the end, more of the frames are lost than found.
+// The first frame from which on, to the end, more of the frames are lost (one or more) than found.
 int LostFrom(const std::vector<int>& lost, const std::vector<int>& found) {
   for (int frame : lost) {
     const auto from = [&](const std::vector<int>& frames) {
@@ -23,7 +23,7 @@ int LostFrom(const std::vector<int>& lost, const std::vector<int>& found) {
     };
     if (from(lost) > from(found)) return frame;
   }
-  return lost.empty() ? 1 : lost.back();
+  return lost.back();
 }
 
 }  // namespace
@@ -48,14 +48,15 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
     all += static_cast<double>(points.cols());
     const double distance = UsualDistance(DistancesToNearest(position[t], recording.surface[t]));
     if (std::isnan(distance)) continue;  // no cloud
-    const bool is_lost = distance > kLostWidths * width ||
-                         seen_now < kFewestTold * static_cast<double>(points.cols());
-    (is_lost ? lost : found).push_back(static_cast<int>(t));
+    const bool is_lost_now = distance > kLostWidths * width ||
+                             seen_now < kFewestTold * static_cast<double>(points.cols());
+    (is_lost_now ? lost : found).push_back(static_cast<int>(t));
   }
   registered.seen = seen / all;
   registered.fit = FitOfClouds(position, recording);
-  const bool in_the_end = registered.fit.distance > kLostWidths * width;
-  if (in_the_end || registered.seen < kFewestTold) registered.lost_from = LostFrom(lost, found);
+  const bool is_lost =
+      registered.fit.distance > kLostWidths * width || registered.seen < kFewestTold;
+  if (is_lost && !lost.empty()) registered.lost_from = LostFrom(lost, found);
   return registered;
 }
 
