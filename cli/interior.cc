@@ -82,17 +82,12 @@ void Run(const InteriorArguments& arguments) {
   if (arguments.surface) on_surface = OnBareSurface(placed.mesh, recording);
   const Points inside =
       SampleInterior(placed.mesh, arguments.spacing, SideBySide(recording.start, on_surface));
-  if (arguments.surface && inside.cols() + on_surface.cols() == 0) {
+  if (inside.cols() + on_surface.cols() == 0) {
     throw Error(
-        fmt::format("{}: points cover its surface, and no point of a lattice of {} m is "
-                    "inside; a smaller --spacing is needed",
-                    arguments.mesh, arguments.spacing));
-  }
-  if (inside.cols() == 0 && !arguments.surface) {
-    throw Error(
-        fmt::format("{}: no point of a lattice of {} m is inside; a smaller --spacing or a "
-                    "closed mesh is needed",
-                    arguments.mesh, arguments.spacing));
+        fmt::format("{}: {}no point of a lattice of {} m is inside; a smaller --spacing {}is "
+                    "needed",
+                    arguments.mesh, arguments.surface ? "points cover its surface, and " : "",
+                    arguments.spacing, arguments.surface ? "" : "or a closed mesh "));
   }
   AddInterior(SideBySide(on_surface, inside), &recording);
   WriteRecording(recording, arguments.output);

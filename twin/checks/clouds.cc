@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "twin/checks/motion_scale.h"
+#include "twin/checks/plausibility.h"
 
 namespace physpring {
 namespace {
 
-constexpr double kLargest = 10, kSmallest = 1e-3;  // m, as plausibility.cc has it
 constexpr double kFalse = 0.05;  // of a cloud's points may be false, at either end of each axis
 constexpr double kBelowGround = 0.1, kFarGrasp = 0.75;  // sizes of the cloud
 
@@ -80,7 +80,7 @@ std::vector<std::string> FindOddClouds(const Recording& recording) {
   const Points& first = recording.surface[0];
   if (!first.array().isFinite().any()) return lines;
   const double size = SizeOf(first);
-  if (size > kLargest || size < kSmallest) {
+  if (size > kLargestObject || size < kSmallestObject) {
     lines.push_back(
         fmt::format("the first cloud measures {:.3g} m: are positions in metres?", size));
   }

@@ -16,9 +16,8 @@
 namespace physpring {
 namespace {
 
-// Objects that people hold are smaller and larger than this, and are moved more gently.
-constexpr double kLargest = 10, kSmallest = 1e-3;  // m
-constexpr double kFastest = 300;                   // m/s^2, but for a hundredth of the measurements
+// Objects that people hold are moved more gently: m/s^2, but for a hundredth of the measurements.
+constexpr double kFastest = 300;
 constexpr double kMoves = 2;           // a motion is larger than so many times the noise
 constexpr double kLeastMotion = 1e-5;  // m
 constexpr double kBelowGround = 2;     // spacings
@@ -30,12 +29,12 @@ using Lines = std::vector<std::string>;
 
 void CheckUnits(const Recording& recording, const MotionScale& scale, Lines* lines) {
   const double fast = Quantile(0.99, AccelerationSizes(recording));
-  if (scale.size > kLargest) {
+  if (scale.size > kLargestObject) {
     lines->push_back(fmt::format(
         "the object measures {:.3g} m and its points accelerate by up to {:.3g} m/s^2: are "
         "positions in metres?",
         scale.size, fast));
-  } else if (recording.point_count() > 1 && scale.size < kSmallest) {
+  } else if (recording.point_count() > 1 && scale.size < kSmallestObject) {
     lines->push_back(
         fmt::format("the object measures {:.3g} m: are positions in metres?", scale.size));
   } else if (fast > kFastest) {

@@ -12,6 +12,9 @@
 
 namespace physpring {
 
+// Objects that people hold are smaller and larger than this, m.
+inline constexpr double kLargestObject = 10, kSmallestObject = 1e-3;
+
 // What is odd about a recording whose `start` is set, a line each; none for a plausible one.
 std::vector<std::string> FindOddities(const Recording& recording);
 
