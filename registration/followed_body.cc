@@ -12,7 +12,6 @@
 #include "tracker/track_recording.h"
 #include "tracker/tracker_bank.h"
 #include "trainer/bodies/start_system.h"
-#include "twin/checks/motion_scale.h"
 #include "twin/error.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
@@ -24,59 +23,55 @@
 namespace physpring {
 namespace {
 
-// A frame, at first. Fewer make a body that sags, more one that rings (docs/decisions/127).
-constexpr int kSubsteps = 40, kMostSubsteps = 300;
+// A frame. Fewer make a body that sags, more one that rings. Which serve an object is found by how
+// well the body predicts (docs/decisions/156).
+constexpr int kSubsteps = 40, kLeastSubsteps = 12, kMostSubsteps = 300;
 constexpr int kMostPerParticle = 4;  // points of a cloud that pull
 constexpr double kStiffer = 1.5;     // each further body, in sub-steps
-// A body that becomes longer than this is too soft, unless a stiffer one does so, too: then it is
-// the object that stretches.
-constexpr double kMostStretch = 0.01, kStretchesToo = 0.9;
 
 struct FollowedMotion {
   std::vector<Points> position;  // T frames of 3 x particles, m; fewer of one that diverges
-  double stretch = 0;            // exceeded in a tenth of the frames; infinite of one that diverges
+  // How far the clouds were from what was predicted of them, mean of the frames, m; infinite of one
+  // that diverges.
+  double surprise = std::numeric_limits<double>::infinity();
 };
 
-// By which the body's springs are longer than in the beginning, on average. Those that bending
-// makes longer and shorter cancel.
-double StretchOf(const SpringMassSystem& system, const Points& position) {
-  double longer = 0, all = 0;
-  for (int e = 0; e < system.spring_count(); ++e) {
-    if (system.IsControllerSpring(e)) continue;
-    const auto [a, b] = system.springs[static_cast<std::size_t>(e)];
-    const double rest = system.rest_length[e], stiffness = system.stiffness[e];
-    longer += stiffness * rest * ((position.col(a) - position.col(b)).norm() - rest);
-    all += stiffness * rest * rest;
-  }
-  return all > 0 ? longer / all : 0;
-}
-
 // By a body that is as stiff as so many sub-steps a frame bear.
-FollowedMotion FollowWith(const Recording& recording, int substeps) {
+FollowedMotion FollowWith(const Recording& recording, double substeps) {
   SpringMassSystem system = MakeStartSystem(recording, {});
-  ScaleToSubsteps(1 / recording.fps, substeps, kStepSafety, &system);
+  ScaleToSubsteps(1 / recording.fps, static_cast<int>(substeps), kStepSafety, &system);
   const Points start = recording.start.leftCols(recording.particle_count());
-  TrackerBank tracker(system, EnvironmentOf(recording),
-                      {1 / recording.fps, substeps, true, LateGraspsOf(recording)},
-                      MatchWidth(start), start, recording.velocity);
+  TrackerBank tracker(
+      system, EnvironmentOf(recording),
+      {1 / recording.fps, static_cast<int>(substeps), true, LateGraspsOf(recording)},
+      MatchWidth(start), recording.point_count(), start, recording.velocity);
   FrameMeasurement measured;
-  FollowedMotion motion{{start}};
-  std::vector<double> stretches;
+  FollowedMotion motion{.position = {start}};
+  double sum = 0;
   for (int frame = 1; frame < recording.frame_count(); ++frame) {
     StopIfRequested();
     measured.cloud = Thinned(recording.surface[static_cast<std::size_t>(frame)],
                              kMostPerParticle * static_cast<int>(start.cols()));
     tracker.Advance(RecordedInput(recording, frame, 0), measured);
+    if (!tracker.best().position().allFinite()) return motion;
     motion.position.push_back(tracker.best().position());
-    if (!motion.position.back().allFinite()) {
-      motion.position.pop_back();
-      motion.stretch = std::numeric_limits<double>::infinity();
-      return motion;
-    }
-    stretches.push_back(StretchOf(system, motion.position.back()));
+    const double surprise = tracker.best().surprise();
+    if (std::isfinite(surprise)) sum += surprise;  // else nothing was measured yet
   }
-  motion.stretch = Quantile(0.9, std::move(stretches));
+  motion.surprise = sum / (recording.frame_count() - 1);
   return motion;
+}
+
+// Also by stiffer bodies (or softer, `factor` < 1), until two in a row predict worse than the best.
+void TryOthers(const Recording& recording, double factor, FollowedMotion* best) {
+  int worse = 0;
+  for (double substeps = factor * kSubsteps;
+       worse < 2 && substeps >= kLeastSubsteps && substeps <= kMostSubsteps; substeps *= factor) {
+    FollowedMotion other = FollowWith(recording, substeps);
+    const bool better = other.surprise < best->surprise;
+    if (better) *best = std::move(other);
+    worse = better ? 0 : worse + 1;
+  }
 }
 
 // Each particle as those near it moved: a cloud that is seen again and again draws them onto its
@@ -146,19 +141,15 @@ double MatchWidth(const Points& start) {
 }
 
 std::vector<Points> FollowClouds(const Recording& recording) {
-  FollowedMotion motion = FollowWith(recording, kSubsteps);
-  if (std::isinf(motion.stretch)) {
+  FollowedMotion best = FollowWith(recording, kSubsteps);
+  TryOthers(recording, kStiffer, &best);
+  TryOthers(recording, 1 / kStiffer, &best);
+  if (std::isinf(best.surprise)) {
     throw Error(
         fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
-                    recording.name, motion.position.size()));
+                    recording.name, best.position.size()));
   }
-  for (double substeps = kStiffer * kSubsteps;
-       motion.stretch > kMostStretch && substeps <= kMostSubsteps; substeps *= kStiffer) {
-    FollowedMotion stiffer = FollowWith(recording, static_cast<int>(substeps));
-    if (stiffer.stretch > kStretchesToo * motion.stretch) break;
-    motion = std::move(stiffer);
-  }
-  return motion.position;
+  return best.position;
 }
 
 Points CarryOver(const Recording& known, const Recording& clouds) {

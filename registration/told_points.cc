@@ -12,6 +12,9 @@ namespace physpring {
 namespace {
 
 constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that is not lost
+// A cloud is further off than it may be where it is so many times as far as the first one, if that
+// is so many widths of a match.
+constexpr double kFurther = 1.5, kFurtherWidths = 1.25;
 // as soft_match.h names it; the fewest points of a cloud that tell of a particle
 constexpr double kNone = 0.05, kFewestPoints = 0.3;
 
@@ -32,12 +35,17 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
   RegisteredClouds registered;
   registered.recording = recording;
   const double width = MatchWidth(position[0]);
+  const Eigen::VectorXd alike = Eigen::VectorXd::Ones(recording.particle_count());
+  const double first =
+      UsualDistance(DistancesToNearest(position[0], recording.surface[0]));  // NaN of no cloud
+  const double most =
+      std::min(kLostWidths * width, std::fmax(kFurther * first, kFurtherWidths * width));
   double seen = 0, all = 0;
   std::vector<int> lost, found;  // frames
   for (std::size_t t = 1; t < position.size(); ++t) {
     Points& points = registered.recording.points[t];
     points.setConstant(std::numeric_limits<double>::quiet_NaN());
-    const SoftMatch match = MatchSoftly(position[t], recording.surface[t], width, kNone);
+    const SoftMatch match = MatchSoftly(position[t], alike, recording.surface[t], width, kNone);
     double seen_now = 0;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       if (match.count[i] < kFewestPoints) continue;
@@ -48,14 +56,13 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
     all += static_cast<double>(points.cols());
     const double distance = UsualDistance(DistancesToNearest(position[t], recording.surface[t]));
     if (std::isnan(distance)) continue;  // no cloud
-    const bool is_lost_now = distance > kLostWidths * width ||
-                             seen_now < kFewestTold * static_cast<double>(points.cols());
+    const bool is_lost_now =
+        distance > most || seen_now < kFewestTold * static_cast<double>(points.cols());
     (is_lost_now ? lost : found).push_back(static_cast<int>(t));
   }
   registered.seen = seen / all;
   registered.fit = FitOfClouds(position, recording);
-  const bool is_lost =
-      registered.fit.distance > kLostWidths * width || registered.seen < kFewestTold;
+  const bool is_lost = registered.fit.distance > most || registered.seen < kFewestTold;
   if (is_lost && !lost.empty()) registered.lost_from = LostFrom(lost, found);
   return registered;
 }

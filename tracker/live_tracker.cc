@@ -51,7 +51,7 @@ TrackerBank LiveTracker::MakeBank(const Twin& twin, double noise, const LiveFram
   const Points start = StartOf(twin, first);
   return TrackerBank(level.system, {twin.gravity, twin.ground.plane},
                      {1 / fps_, ChooseSubsteps(level, fps_, 0), twin.controller_velocity, {}},
-                     noise, start, Points::Zero(3, start.cols()));
+                     noise, twin.points, start, Points::Zero(3, start.cols()));
 }
 
 void LiveTracker::ExpectNumbers(const LiveFrame& frame) const {

@@ -8,7 +8,8 @@
 
 namespace physpring {
 
-SoftMatch MatchSoftly(const Points& nodes, const Points& cloud, double width, double none) {
+SoftMatch MatchSoftly(const Points& nodes, const Eigen::VectorXd& weight, const Points& cloud,
+                      double width, double none) {
   constexpr int kNearest = 8;           // further nodes have no part
   constexpr double kLeastCount = 1e-9;  // of a node that something belongs to
   SoftMatch match{Eigen::VectorXd::Zero(nodes.cols()), Points::Zero(3, nodes.cols())};
@@ -19,7 +20,8 @@ SoftMatch MatchSoftly(const Points& nodes, const Points& cloud, double width, do
     std::vector<double> parts;
     double sum = none;
     for (const Neighbour& node : nearest) {
-      parts.push_back(std::exp(-0.5 * node.distance * node.distance / (width * width)));
+      parts.push_back(weight[node.index] *
+                      std::exp(-0.5 * node.distance * node.distance / (width * width)));
       sum += parts.back();
     }
     if (!(sum > 0)) continue;  // it is far from all

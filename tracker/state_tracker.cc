@@ -19,40 +19,52 @@ constexpr double kWidth = 0.4;  // of a match in the end, in the nodes' spacing
 constexpr double kNarrower = 0.5, kSurprise = 2, kWidest = 3;
 constexpr double kNone = 0.05;  // soft_match.h
 
+Points PositionsOf(const NodeStates<double>& state, Eigen::Index nodes) {
+  Points position(3, nodes);
+  for (Eigen::Index i = 0; i < nodes; ++i) {
+    for (int j = 0; j < 3; ++j) position(j, i) = state[static_cast<std::size_t>(i)].x[j];
+  }
+  return position;
+}
+
 }  // namespace
 
-StateTracker::StateTracker(const SpringMassSystem& system,
-                           std::shared_ptr<const SmoothCorrection> correction,
-                           const Environment& environment, const SimulationOptions& simulation,
-                           const TrackerOptions& options, const Points& nodes,
-                           const Points& velocity)
+StateTracker::StateTracker(std::shared_ptr<const SmoothCorrection> correction, double fps,
+                           const TrackerOptions& options, const NodeStates<double>& start,
+                           int nodes)
     : options_(options),
-      fps_(1 / simulation.frame_time),
-      simulator_(system, environment, simulation),
-      workspace_(simulator_),
+      fps_(fps),
       correction_(std::move(correction)),
-      state_(simulator_.MakeState(nodes, velocity)),
-      position_(nodes),
-      predicted_(nodes) {
-  const double spacing = nodes.cols() > 1 ? MedianSpacing(nodes) : options.noise;
+      seen_(nodes, options.surface),
+      state_(start),
+      position_(PositionsOf(start, nodes)),
+      predicted_(position_) {
+  const double spacing = nodes > 1 ? MedianSpacing(position_) : options.noise;
   width_ = std::max(kWidth * spacing, options.noise);
 }
 
-void StateTracker::Advance(const FrameInput& input, const FrameMeasurement& measured) {
-  simulator_.AdvanceFrame(input, &state_, &workspace_);
-  predicted_ = simulator_.Positions(state_);
+Points StateTracker::velocity() const {
+  Points velocity(3, position_.cols());
+  for (Eigen::Index i = 0; i < velocity.cols(); ++i) {
+    for (int j = 0; j < 3; ++j) velocity(j, i) = state_[static_cast<std::size_t>(i)].v[j];
+  }
+  return velocity;
+}
+
+void StateTracker::Correct(const FrameMeasurement& measured) {
+  predicted_ = PositionsOf(state_, position_.cols());
   if (!predicted_.allFinite()) {
     position_ = predicted_;
     surprise_ = std::numeric_limits<double>::infinity();
     return;
   }
-  const Points moved = Correct(measured);
+  const Points moved = DisplacementBy(measured);
   Move(moved, gain_ / (2 - gain_));  // Benedict and Bordner's choice, of the gain that it has
 }
 
 StateTracker::Pull StateTracker::PullOfNamed(const Points& named) const {
   const Eigen::Index nodes = predicted_.cols();
-  Pull pull{Points::Zero(3, nodes), Eigen::VectorXd::Zero(nodes)};
+  Pull pull{Points::Zero(3, nodes), Eigen::VectorXd::Zero(nodes), 0, {}};
   for (Eigen::Index i = 0; i < std::min(nodes, named.cols()); ++i) {
     if (!named.col(i).allFinite()) continue;
     pull.offset.col(i) = named.col(i) - predicted_.col(i);
@@ -63,8 +75,8 @@ StateTracker::Pull StateTracker::PullOfNamed(const Points& named) const {
 
 void StateTracker::AddCloud(const Points& cloud, const Points& moved, double width,
                             Pull* pull) const {
-  const SoftMatch match = MatchSoftly(predicted_ + moved, cloud, width, kNone);
-  for (Eigen::Index i = 0; i < predicted_.cols(); ++i) {
+  const SoftMatch match = MatchSoftly(predicted_ + moved, seen_.weight(), cloud, width, kNone);
+  for (Eigen::Index i = 0; i < match.count.size(); ++i) {
     if (!(match.count[i] > 0)) continue;
     const double precision = match.count[i] / (width * width);
     const Eigen::Vector3d offset = match.target.col(i) - predicted_.col(i);
@@ -73,9 +85,10 @@ void StateTracker::AddCloud(const Points& cloud, const Points& moved, double wid
     pull->precision[i] = both;
   }
   pull->unmatched = cloud.row(0).array().isFinite().count() - match.count.sum();
+  pull->count = match.count;
 }
 
-Points StateTracker::Correct(const FrameMeasurement& measured) {
+Points StateTracker::DisplacementBy(const FrameMeasurement& measured) {
   const Pull named = PullOfNamed(measured.named);
   const bool has_cloud = measured.cloud.array().isFinite().any();
   const double unit = has_cloud ? width_ : options_.noise;
@@ -93,6 +106,7 @@ Points StateTracker::Correct(const FrameMeasurement& measured) {
     moved = correction_->Solve(pull.offset, pull.precision, options_.model_error * unit);
     if (width > width_) continue;
     Judge(pull, moved, unit);
+    seen_.Learn(pull.count, 1 / fps_);
     return moved;
   }
 }
@@ -115,7 +129,7 @@ void StateTracker::Move(const Points& displacement, double velocity_gain) {
       node.v[j] += velocity_gain * fps_ * displacement(j, i);
     }
   }
-  position_ = simulator_.Positions(state_);
+  position_ = predicted_ + displacement;
 }
 
 }  // namespace physpring

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where are all nodes of a body of which some points are seen? The body's model predicts a frame,
-// and what is measured corrects it: named points, or a cloud of points without names. The
-// correction moves the body as a whole (smooth_correction.h) and its velocities with it. A cloud is
-// matched again as the body is pulled towards it, softly at first (soft_match.h).
+// Where are all nodes of a body of which some points are seen? The body's model predicts a frame
+// (whoever has the tracker moves its state on), and what is measured corrects it: named points, or
+// a cloud of points without names. The correction moves the body as a whole (smooth_correction.h)
+// and its velocities with it. A cloud is matched again as the body is pulled towards it, softly at
+// first (soft_match.h), to the nodes on the surface that it shows (seen_nodes.h).
 //
 // How much a measurement counts beside the model is for the caller to say: tracker_bank.h tries
 // several.
@@ -12,8 +13,9 @@
 #include <limits>
 #include <memory>
 
+#include "tracker/seen_nodes.h"
 #include "tracker/smooth_correction.h"
-#include "twin/simulator.h"
+#include "twin/node_state.h"
 
 namespace physpring {
 
@@ -28,21 +30,24 @@ struct TrackerOptions {
   // How far the prediction of a frame is off, in the noise of what corrects it (of a cloud: the
   // width of the match).
   double model_error = 1;
+  int surface = 0;  // the first nodes, which clouds are more likely to show than the others
 };
 
 class StateTracker {
  public:
-  // `correction`: that of the system. `nodes`: where the nodes are at first, 3 x nodes, m.
-  // `simulation.frame_time`: of a frame, s.
-  StateTracker(const SpringMassSystem& system, std::shared_ptr<const SmoothCorrection> correction,
-               const Environment& environment, const SimulationOptions& simulation,
-               const TrackerOptions& options, const Points& nodes, const Points& velocity);
+  // `correction`: that of the body's system. `fps`: frames a second. `start`: the state at first.
+  // `nodes`: how many of it are nodes.
+  StateTracker(std::shared_ptr<const SmoothCorrection> correction, double fps,
+               const TrackerOptions& options, const NodeStates<double>& start, int nodes);
 
-  // Goes on by one frame. A motion that diverges is not finite from then on.
-  void Advance(const FrameInput& input, const FrameMeasurement& measured);
+  // That of the last frame as it was corrected, to be moved on to the next frame.
+  NodeStates<double>* state() { return &state_; }
 
-  const Points& position() const { return position_; }               // 3 x nodes, m, corrected
-  Points velocity() const { return simulator_.Velocities(state_); }  // 3 x nodes, m/s
+  // After that. A motion that diverges is not finite from then on.
+  void Correct(const FrameMeasurement& measured);
+
+  const Points& position() const { return position_; }  // 3 x nodes, m, corrected
+  Points velocity() const;                              // 3 x nodes, m/s
   // How far the measurements of the last frame that had any were from their prediction, root mean
   // square of a coordinate, m; infinite before it and after a divergence. A point of a cloud that
   // belongs to no node counts as far.
@@ -54,20 +59,20 @@ class StateTracker {
   struct Pull {
     Points offset;
     Eigen::VectorXd precision;
-    double unmatched = 0;  // points of a cloud that belong to no node
+    double unmatched = 0;   // points of a cloud that belong to no node
+    Eigen::VectorXd count;  // (nodes): how many belong to a node
   };
   Pull PullOfNamed(const Points& named) const;
   void AddCloud(const Points& cloud, const Points& moved, double width, Pull* pull) const;
-  // The displacements of the nodes from where they are predicted.
-  Points Correct(const FrameMeasurement& measured);
+  // By which the measurements displace the nodes from where they are predicted.
+  Points DisplacementBy(const FrameMeasurement& measured);
   void Judge(const Pull& pull, const Points& moved, double unit);
   void Move(const Points& displacement, double velocity_gain);
 
   TrackerOptions options_;
   double fps_;
-  Simulator<double> simulator_;
-  Simulator<double>::Workspace workspace_;
   std::shared_ptr<const SmoothCorrection> correction_;
+  SeenNodes seen_;
   double width_;  // of a match, m
   NodeStates<double> state_;
   Points position_, predicted_;

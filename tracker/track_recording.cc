@@ -190,8 +190,8 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   TrackerBank tracker(level.system, EnvironmentOf(recording),
                       {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0),
                        twin.controller_velocity, LateGraspsOf(recording)},
-                      NoiseOf(told), recording.start.leftCols(recording.particle_count()),
-                      recording.velocity);
+                      NoiseOf(told), recording.point_count(),
+                      recording.start.leftCols(recording.particle_count()), recording.velocity);
   const double delay = ControllerDelay(level.system);
   const auto begin = std::chrono::steady_clock::now();
   motion.position.push_back(tracker.best().position());

@@ -16,20 +16,28 @@ constexpr double kMemory = 0.5;    // s, in which what was measured fades
 }  // namespace
 
 TrackerBank::TrackerBank(const SpringMassSystem& system, const Environment& environment,
-                         const SimulationOptions& simulation, double noise, const Points& nodes,
-                         const Points& velocity)
-    : fps_(1 / simulation.frame_time), surprise_(kModelErrors.size(), 0), best_(kFirst) {
+                         const SimulationOptions& simulation, double noise, int surface,
+                         const Points& nodes, const Points& velocity)
+    : fps_(1 / simulation.frame_time),
+      simulators_(std::make_unique<SideBySide>(system, environment, simulation,
+                                               static_cast<int>(kModelErrors.size()))),
+      surprise_(kModelErrors.size(), 0),
+      best_(kFirst) {
   const auto correction = std::make_shared<const SmoothCorrection>(system);
+  const NodeStates<double> start = simulators_->MakeState(nodes, velocity);
   for (double error : kModelErrors) {
-    trackers_.emplace_back(system, correction, environment, simulation,
-                           TrackerOptions{noise, error}, nodes, velocity);
+    trackers_.emplace_back(correction, fps_, TrackerOptions{noise, error, surface}, start,
+                           system.node_count());
   }
 }
 
 void TrackerBank::Advance(const FrameInput& input, const FrameMeasurement& measured) {
+  std::vector<NodeStates<double>*> states;
+  for (StateTracker& tracker : trackers_) states.push_back(tracker.state());
+  simulators_->AdvanceFrame(input, states);
   const double fade = std::exp(-1 / (kMemory * fps_));
   for (std::size_t i = 0; i < trackers_.size(); ++i) {
-    trackers_[i].Advance(input, measured);
+    trackers_[i].Correct(measured);
     const double now = trackers_[i].surprise();
     const bool diverged = !trackers_[i].position().allFinite();
     if (std::isfinite(now) || diverged) {  // else nothing was ever measured

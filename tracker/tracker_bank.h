@@ -7,18 +7,21 @@
 #ifndef PHYSPRING_TRACKER_TRACKER_BANK_H_
 #define PHYSPRING_TRACKER_TRACKER_BANK_H_
 
+#include <memory>
 #include <vector>
 
+#include "tracker/side_by_side.h"
 #include "tracker/state_tracker.h"
 
 namespace physpring {
 
 class TrackerBank {
  public:
-  // As of StateTracker. `noise`: standard deviation of a measured coordinate, m; a cloud needs
-  // none.
+  // `simulation.frame_time`: of a frame, s. `nodes`: where the nodes are at first, 3 x nodes, m.
+  // `velocity`: m/s, alike. `noise`: standard deviation of a measured coordinate, m; a cloud needs
+  // none. `surface`: how many nodes are on it, the first ones.
   TrackerBank(const SpringMassSystem& system, const Environment& environment,
-              const SimulationOptions& simulation, double noise, const Points& nodes,
+              const SimulationOptions& simulation, double noise, int surface, const Points& nodes,
               const Points& velocity);
 
   // Goes on by one frame.
@@ -29,6 +32,7 @@ class TrackerBank {
 
  private:
   double fps_;
+  std::unique_ptr<SideBySide> simulators_;
   std::vector<StateTracker> trackers_;
   std::vector<double> surprise_;  // (trackers): mean square of late, m^2
   std::size_t best_;

@@ -51,7 +51,8 @@ TEST_F(LiveTrackerTest, DoesWhatTheBankDoesWithARecording) {
                       ChooseSubsteps(twin_.levels[0], recording_.fps, 0),
                       twin_.controller_velocity,
                       {}},
-                     kNoise, recording_.start.leftCols(recording_.particle_count()),
+                     kNoise, recording_.point_count(),
+                     recording_.start.leftCols(recording_.particle_count()),
                      Points::Zero(3, recording_.particle_count()));
     LiveTracker live(twin_, recording_.fps, kNoise, Frame(0));
     // the interior is not measured
