@@ -119,7 +119,7 @@ void Run(const EvalArguments& arguments) {
   const std::vector<RecordingEntry> entries = ListRecordings(arguments.recordings, Role::kHeldout);
   ExpectOneRecording(arguments, entries.size());
   ExpectWritable(arguments, entries);
-  WarnIfUnfinished(evaluation.twin, arguments.twin);
+  WarnOfTraining(evaluation.twin, arguments.twin);
   evaluation.recordings.resize(entries.size());
   ParallelFor(static_cast<int>(entries.size()), arguments.threads, [&](int i) {
     Recording recording = ReadRecordingFor(evaluation.twin, entries[i].path);

@@ -57,7 +57,7 @@ std::string CommandLine(const CLI::App& command) {
 
 void Run(const ExportArguments& arguments, const std::string& command_line) {
   const Twin read = ReadTwin(arguments.twin);
-  WarnIfUnfinished(read, arguments.twin);
+  WarnOfTraining(read, arguments.twin);
   const ExportedFolder folder =
       MakeExport(read, arguments.options, command_line, arguments.samples);
   WriteFolder(arguments.output, folder.files, arguments.force);

@@ -35,7 +35,7 @@ Json Inspect(const std::string& path) {
     const Twin twin = ReadTwin(path);
     fmt::print("{}: a twin named {} with {} {}\n{}", path, twin.name, twin.levels.size(),
                twin.levels.size() == 1 ? "level" : "levels", DescribeTwin(twin));
-    WarnIfUnfinished(twin, path);
+    WarnOfTraining(twin, path);
     Json json = TwinToJson(twin);
     json["finished"] = IsFinished(twin);
     return json;

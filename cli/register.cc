@@ -112,12 +112,16 @@ void AddRegisterCommand(CLI::App& app) {
   CLI::Option* refine = command->add_flag(
       "--refine", arguments->refine,
       "fit twins to the points, and name them anew where those predict them; some minutes");
-  AddThreads(command, &arguments->threads, "of --refine; the result does not depend on it")
-      ->needs(refine);
+  CLI::Option* threads =
+      AddThreads(command, &arguments->threads, "at most; the result does not depend on it");
   CLI::Option* markers = command->add_flag(
       "--markers", arguments->markers,
       "the points are markers, the same ones in each frame in any order; some may be hidden");
-  markers->excludes("--points")->excludes("--like")->excludes("--shape")->excludes(refine);
+  markers->excludes("--points")
+      ->excludes("--like")
+      ->excludes("--shape")
+      ->excludes(refine)
+      ->excludes(threads);
   command->add_flag("--rod", arguments->rod, "the markers are along a rod: write their `order`")
       ->needs(markers);
   command->add_flag("--force", arguments->force, "overwrite a file");

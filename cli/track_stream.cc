@@ -86,7 +86,7 @@ void PrintState(int frame, const StateTracker& state) {
 
 void TrackStream(const std::string& twin_path, const StreamOptions& options) {
   const Twin twin = ReadTwin(twin_path);
-  WarnIfUnfinished(twin, twin_path);
+  WarnOfTraining(twin, twin_path);
   const double fps = options.fps > 0 ? options.fps : twin.fps;
   std::optional<LiveTracker> tracker;
   constexpr std::streamsize kLongest = 4 << 20;  // of a line

@@ -81,20 +81,19 @@ void Warn(const std::vector<std::string>& warnings) {
 // A twin that was trained on the same recordings.
 Twin ReadLevel0(const std::string& path, const FitData& data) {
   Twin twin = ReadTwin(path);
-  WarnIfUnfinished(twin, path);
+  WarnOfTraining(twin, path);
   ExpectLevel0Of(data, twin, path);
   return twin;
 }
 
-void PrintReport(const std::string& output, const TrainingRun& run, const std::string& fit_error,
-                 double seconds) {
+void PrintReport(const std::string& output, const TrainingRun& run, double seconds) {
   for (std::size_t i = 0; i < run.twin.levels.size(); ++i) {
     const TwinLevel& level = run.twin.levels[i];
     fmt::print("{}: level {} with {} nodes, {} springs, {:.4g} sub-steps a frame\n", output, i,
                level.system.node_count(), level.system.spring_count(),
                level.substeps_per_second / run.twin.fps);
   }
-  fmt::print("{}\n", fit_error);
+  fmt::print("{}\n", run.fit.line);
   fmt::print("{}", DescribeScales(run.twin));
   if (run.twin.material) fmt::print("{}", DescribeMaterial(*run.twin.material));
   if (!run.status.empty()) fmt::print("{}\n", run.status);
@@ -174,10 +173,9 @@ void Run(const TrainArguments& arguments) {
 
   const TrainingTask task{data, options, dense};
   const TrainingRun run = TrainWith(checkpoint, task, arguments);
-  const FitReport fit = JudgeTraining(task, run.twin);
-  Warn(fit.warnings);
+  Warn(run.fit.warnings);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  PrintReport(arguments.output, run, fit.line, elapsed.count());
+  PrintReport(arguments.output, run, elapsed.count());
   if (!log_failure.empty()) {
     throw Error(fmt::format("{}: has not all lines, though {} is whole: {}", arguments.log,
                             arguments.output, log_failure));

@@ -4,6 +4,7 @@
 #include "cli/message.h"
 #include "jobs/checkpoint.h"
 #include "jobs/remarks.h"
+#include "twin/checks/plausibility.h"
 
 namespace physpring {
 
@@ -16,10 +17,15 @@ void PrintRemarks(std::span<const Recording> recordings) {
   for (const std::string& note : JoinAlike(NotesOf(recordings))) Tell("note: {}\n", note);
 }
 
-void WarnIfUnfinished(const Twin& twin, const std::string& path) {
-  if (IsFinished(twin)) return;
-  Tell("warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
-       path);
+void WarnOfTraining(const Twin& twin, const std::string& path) {
+  if (!IsFinished(twin)) {
+    Tell("warning: {}: its training is not finished; `physpring train` with --resume goes on\n",
+         path);
+  }
+  if (!twin.fit_errors) return;
+  const FitErrors& fit = *twin.fit_errors;
+  const std::string little = TooLittleExplained(fit.track, fit.motionless, fit.noise);
+  if (!little.empty()) Tell("warning: {}: of what it was trained on, {}\n", path, little);
 }
 
 }  // namespace physpring

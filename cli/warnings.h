@@ -18,8 +18,9 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // The recordings' warnings and notes.
 void PrintRemarks(std::span<const Recording> recordings);
 
-// Warns if the training that wrote the twin did not come to its end.
-void WarnIfUnfinished(const Twin& twin, const std::string& path);
+// Warns if the training that wrote the twin did not come to its end, or explains little of what it
+// was fitted to.
+void WarnOfTraining(const Twin& twin, const std::string& path);
 
 }  // namespace physpring
 

@@ -109,6 +109,7 @@ Twin TwinWith(Twin twin, const Verdict& verdict, std::size_t own,
               const std::vector<SplitRecording>& splits) {
   twin.training_state.clear();
   twin.material.reset();  // they are of level 0 as it was
+  twin.fit_errors.reset();
   twin.posterior = {};
   const auto first = verdict.system.effects.begin() + static_cast<long>(own);
   for (TwinLevel& level : twin.levels) {

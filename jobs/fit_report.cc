@@ -51,17 +51,21 @@ std::optional<double> MotionlessTrack(const std::vector<RecordingResult>& result
                    [](const RecordingResult& one) { return one.baselines[0].errors; });
 }
 
-// Whether what level 0 leaves of the fit frames is noise.
-std::string WhatIsLeft(const Twin& twin, const FitData& data, const TrainOptions& options) {
+// Of level 0 in the fit frames.
+double CorrelationOf(const Twin& twin, const FitData& data, const TrainOptions& options) {
   RolloutOptions rollout;
   rollout.single_precision = options.single_precision;
   rollout.controller_velocity = twin.controller_velocity;
-  const double correlation =
-      ResidualCorrelation(twin.levels[0].system, FitEpisodes(data, kMostRecordings), rollout);
-  const bool noise = correlation < kNoiseCorrelation;
+  return ResidualCorrelation(twin.levels[0].system, FitEpisodes(data, kMostRecordings), rollout);
+}
+
+// Whether what level 0 leaves of the fit frames is noise.
+std::string WhatIsLeft(const Twin& twin, const FitErrors& errors, const FitData& data,
+                       const TrainOptions& options) {
+  const bool noise = errors.LeavesNoise();
   std::string line =
       fmt::format("what is left is {} (the errors of one frame and the next correlate by {:.2f})",
-                  noise ? "noise" : "more than noise", correlation);
+                  noise ? "noise" : "more than noise", errors.correlation);
   const bool is_net = twin.material.has_value();  // no chain
   if (noise || !is_net) return line;
   line +=
@@ -88,10 +92,6 @@ std::string AtTheStiffest(const Twin& twin, const FitData& data, const TrainOpti
       "\nlevel 0 is as stiff as {:g} sub-steps a second allow: the object may be stiffer, and then "
       "its material is not the one below (--substeps N allows more, N in a frame)",
       rate);
-}
-
-std::string InMillimetres(const std::optional<double>& error) {
-  return error ? fmt::format("{:.3f} mm", 1e3 * *error) : "no data";
 }
 
 }  // namespace
@@ -140,11 +140,16 @@ FitReport JudgeFit(const Twin& twin, const FitData& data, const TrainOptions& op
   const auto later = TrackOfLevel0(results, split, end);
 
   FitReport report;
-  report.line = fmt::format("track error on the fit frames: {} (a motionless body: {})",
-                            InMillimetres(fit), InMillimetres(still));
-  if (later) report.line += fmt::format("; on the later ones: {}", InMillimetres(later));
-  report.line += "\n" + WhatIsLeft(twin, data, options) + AtTheStiffest(twin, data, options);
-  const std::string little = LittleExplained(results, first, split, data.recordings[0]);
+  if (!fit || !still) {
+    report.line = "track error on the fit frames: no data";
+    return report;
+  }
+  report.errors = FitErrors{*fit, *still, later, MeasurementNoise(data.recordings[0].points),
+                            CorrelationOf(twin, data, options)};
+  report.line = "track error " + DescribeFitErrors(*report.errors) + "\n" +
+                WhatIsLeft(twin, *report.errors, data, options) +
+                AtTheStiffest(twin, data, options);
+  const std::string little = TooLittleExplained(*fit, *still, report.errors->noise);
   if (!little.empty()) report.warnings.push_back(little);
   if (later && report.warnings.empty()) {
     report.warnings = NearerBaselines(results, split, end, "the frames after those for fitting");

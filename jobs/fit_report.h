@@ -3,6 +3,7 @@
 #ifndef PHYSPRING_JOBS_FIT_REPORT_H_
 #define PHYSPRING_JOBS_FIT_REPORT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@
 namespace physpring {
 
 struct FitReport {
-  std::string line;  // the errors on the fit frames and after them; is what is left noise
+  std::optional<FitErrors> errors;  // none where the fit frames have no data
+  std::string line;                 // the errors on the fit frames and after them; is what is left noise
   std::vector<std::string> warnings;  // a useless twin, and a baseline that is nearer
 };
 

@@ -28,7 +28,7 @@ RegisteredClouds RegisterOnShape(const Recording& clouds, const RegistrationOpti
   *warnings = placed.warnings;
   const Points samples =
       SampleSurface(placed.mesh, kSamples * std::max(options.points, kMostMadePoints));
-  return RegisterCloudsOn(clouds, samples, options.points);
+  return RegisterCloudsOn(clouds, samples, options.points, options.threads);
 }
 
 void AddDoubts(const RegisteredClouds& registered, std::vector<std::string>* warnings) {
@@ -91,9 +91,9 @@ CloudRegistration RegisterAsAsked(const Recording& clouds, const RegistrationOpt
   if (!options.shape.empty()) {
     registration.clouds = RegisterOnShape(clouds, options, &registration.warnings);
   } else if (options.like) {
-    registration.clouds = RegisterCloudsLike(clouds, *options.like);
+    registration.clouds = RegisterCloudsLike(clouds, *options.like, options.threads);
   } else {
-    registration.clouds = RegisterClouds(clouds, options.points);
+    registration.clouds = RegisterClouds(clouds, options.points, options.threads);
   }
   if (options.refine && registration.clouds.lost_from) {
     registration.warnings.emplace_back("not refined: a fit to points that are lost tells nothing");

@@ -21,7 +21,7 @@ struct RegistrationOptions {
   std::string shape;              // file of the object's surface in frame 0; empty: not known
   std::optional<Recording> like;  // whose points are taken
   bool refine = false;            // name the points anew by fits
-  int threads = 1;                // of `refine`, at most; the result does not depend on it
+  int threads = 1;                // at most; the result does not depend on it
 };
 
 struct CloudRegistration {

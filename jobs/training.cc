@@ -52,18 +52,27 @@ class Running {
   }
 
   void WriteUnfinished() {
+    if (whole_) return;  // stopped as it was judged
     const Stopwatch writing;
     run_.twin = checkpoint_.Write(so_far_, journal_);
     Written(writing.seconds());
   }
-  void WriteFinished(const Twin& twin) {
-    const Stopwatch writing;
-    run_.twin = checkpoint_.WriteFinished(twin);
-    Written(writing.seconds());
+  // It is whole before it is judged, and then says how well it fits.
+  void Finish(Twin twin, const TrainingTask& task) {
+    WriteFinished(twin);
+    run_.fit = JudgeTraining(task, run_.twin);
+    twin.fit_errors = run_.fit.errors;
+    WriteFinished(twin);
     run_.parts.emplace_back("writing checkpoints", checkpoint_seconds_);
   }
 
  private:
+  void WriteFinished(const Twin& twin) {
+    const Stopwatch writing;
+    run_.twin = checkpoint_.WriteFinished(twin);
+    whole_ = true;
+    Written(writing.seconds());
+  }
   // Before a step.
   void Begin(double share, const std::string& status) {
     StopIfRequested();
@@ -92,6 +101,7 @@ class Running {
   Journal& journal_;
   TrainingRun& run_;
   Twin so_far_;
+  bool whole_ = false;  // the finished twin is written
   Stopwatch since_step_, since_checkpoint_;
   double checkpoint_seconds_ = 0;
 };
@@ -151,17 +161,18 @@ TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, 
                         double interval, const TellProgress& progress) {
   Journal journal;
   TrainingRun run;
-  if (resume) {
-    const std::optional<Twin> before = checkpoint.Resume(&journal);
-    if (before && IsFinished(*before)) {
-      run.twin = *before;
-      return run;
-    }
+  std::optional<Twin> before;
+  if (resume) before = checkpoint.Resume(&journal);
+  if (before && IsFinished(*before) && before->fit_errors) {
+    run.twin = *before;
+    run.fit = JudgeTraining(task, run.twin);
+    return run;
   }
   Running running(checkpoint, interval, progress, &journal, &run);
   try {
     const Work work(&journal, checkpoint.Key());
-    running.WriteFinished(Train(task.data, task.options, task.dense, work));
+    const bool trained = before && IsFinished(*before);  // and was not yet judged
+    running.Finish(trained ? *before : Train(task.data, task.options, task.dense, work), task);
   } catch (const Stopped&) {
     run.stopped = true;
     running.WriteUnfinished();

@@ -25,6 +25,7 @@ struct TrainingTask {
 
 struct TrainingRun {
   Twin twin;             // as written
+  FitReport fit;         // of the finished twin
   bool stopped = false;  // it was asked to stop (twin/stop_request.h)
   double share = 0;      // of the work that is done
   std::string status;    // of the last step
@@ -37,8 +38,12 @@ struct TrainingRun {
 // thread may call it, one at a time.
 using TellProgress = std::function<void(double share, const std::string& status)>;
 
+// How good the finished twin of a task is; also warns of controllers and forces that it does not
+// use.
+FitReport JudgeTraining(const TrainingTask& task, const Twin& twin);
+
 // Writes `checkpoint` at most every `interval` seconds, and at the end. Goes on from it if
-// `resume`. Each step and checkpoint is a line of the log (spdlog's default logger).
+// `resume`. The finished twin is judged, and says how well it fits. Each step and checkpoint is a line of the log (spdlog's default logger).
 TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
                         double interval, const TellProgress& progress);
 
@@ -48,10 +53,6 @@ void ExpectLevel0Of(const FitData& data, const Twin& twin, const std::string& pa
 
 // The effects of a twin that was diagnosed. Throws Error if it has none.
 std::vector<EffectValues> EffectsOf(const Twin& twin, const std::string& path);
-
-// How good the finished twin of a task is; also warns of controllers and forces that it does not
-// use.
-FitReport JudgeTraining(const TrainingTask& task, const Twin& twin);
 
 }  // namespace physpring
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "twin/error.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
+#include "twin/parallel.h"
 #include "twin/recorded_input.h"
 #include "twin/rotation.h"
 #include "twin/stability.h"
@@ -62,17 +64,15 @@ FollowedMotion FollowWith(const Recording& recording, double substeps) {
   return motion;
 }
 
-// Also by stiffer bodies (or softer, `factor` < 1), until two in a row predict worse than the best.
-void TryOthers(const Recording& recording, double factor, FollowedMotion* best) {
-  int worse = 0;
-  for (double substeps = factor * kSubsteps;
-       worse < 2 && substeps >= kLeastSubsteps && substeps <= kMostSubsteps; substeps *= factor) {
-    FollowedMotion other = FollowWith(recording, substeps);
-    const bool better = other.surprise < best->surprise;
-    if (better) *best = std::move(other);
-    worse = better ? 0 : worse + 1;
+// The bodies on one side of the first one, each by a factor stiffer than the last one, or softer.
+struct Way {
+  double factor, substeps;  // of the next one
+  int worse = 0;            // so many in a row predict no better than the best
+
+  bool IsOpen() const {
+    return worse < 2 && substeps >= kLeastSubsteps && substeps <= kMostSubsteps;
   }
-}
+};
 
 // Each particle as those near it moved: a cloud that is seen again and again draws them onto its
 // points.
@@ -87,7 +87,7 @@ Points MoveWithNeighbours(const Points& from, const Points& to) {
 // The known particles, moved as a rigid body with the controllers, then within a second as a soft
 // body with the controllers and the first cloud. `bears`: the known shape bears its weight already,
 // so it stays where the cloud shows nothing. Else it hangs anew, as in another shape it would.
-Points PulledOver(const Recording& known, const Recording& clouds, bool bears) {
+Points PulledOver(const Recording& known, const Recording& clouds, bool bears, int threads) {
   constexpr int kFrames = 50;  // of the second
   const Points& there = clouds.controllers[0];
   Points start = known.start.leftCols(known.particle_count()), hands = known.controllers[0];
@@ -108,7 +108,7 @@ Points PulledOver(const Recording& known, const Recording& clouds, bool bears) {
   for (int t = 0; t <= kFrames; ++t) {
     way.controllers.emplace_back(hands + t / static_cast<double>(kFrames) * (there - hands));
   }
-  return MoveWithNeighbours(start, FollowClouds(way).back());
+  return MoveWithNeighbours(start, FollowClouds(way, threads).back());
 }
 
 }  // namespace
@@ -140,10 +140,27 @@ double MatchWidth(const Points& start) {
   return std::max(0.4 * MedianSpacing(start), size / 200);
 }
 
-std::vector<Points> FollowClouds(const Recording& recording) {
-  FollowedMotion best = FollowWith(recording, kSubsteps);
-  TryOthers(recording, kStiffer, &best);
-  TryOthers(recording, 1 / kStiffer, &best);
+std::vector<Points> FollowClouds(const Recording& recording, int threads) {
+  FollowedMotion best;
+  std::array<Way, 2> ways{{{kStiffer, kSubsteps}, {1 / kStiffer, kSubsteps / kStiffer}}};
+  for (;;) {
+    std::vector<Way*> open;
+    for (Way& way : ways) {
+      if (way.IsOpen()) open.push_back(&way);
+    }
+    if (open.empty()) break;
+    std::vector<FollowedMotion> motions(open.size());
+    ParallelFor(static_cast<int>(open.size()), threads, [&](int i) {
+      motions[static_cast<std::size_t>(i)] =
+          FollowWith(recording, open[static_cast<std::size_t>(i)]->substeps);
+    });
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const bool better = motions[i].surprise < best.surprise;
+      if (better || best.position.empty()) best = std::move(motions[i]);
+      open[i]->worse = better ? 0 : open[i]->worse + 1;
+      open[i]->substeps *= open[i]->factor;
+    }
+  }
   if (std::isinf(best.surprise)) {
     throw Error(
         fmt::format("recording {}: the body that the clouds pull along diverges in frame {}",
@@ -152,7 +169,7 @@ std::vector<Points> FollowClouds(const Recording& recording) {
   return best.position;
 }
 
-Points CarryOver(const Recording& known, const Recording& clouds) {
+Points CarryOver(const Recording& known, const Recording& clouds, int threads) {
   if (known.controller_count() != clouds.controller_count()) {
     throw Error(
         fmt::format("recording {}: has {} controllers, but {} has {}; expected recordings of one "
@@ -162,10 +179,10 @@ Points CarryOver(const Recording& known, const Recording& clouds) {
   const auto off = [&](const Points& start) {
     return UsualDistance(DistancesToNearest(start, clouds.surface[0]));
   };
-  Points start = PulledOver(known, clouds, true);
+  Points start = PulledOver(known, clouds, true, threads);
   const double most = kLostWidths * MatchWidth(start);
   if (off(start) > most) {
-    const Points other = PulledOver(known, clouds, false);
+    const Points other = PulledOver(known, clouds, false, threads);
     if (off(other) < off(start)) start = other;
   }
   if (!(off(start) > most)) return start;

@@ -28,15 +28,16 @@ double MatchWidth(const Points& start);
 inline constexpr double kLostWidths = 2.5;
 
 // Where the particles of such a recording are in all frames: T frames of 3 x particles, m. Throws
-// Error where they make no body (twin/topology.h), and where the motion diverges.
-std::vector<Points> FollowClouds(const Recording& recording);
+// Error where they make no body (twin/topology.h), and where the motion diverges. The result does
+// not depend on the number of threads.
+std::vector<Points> FollowClouds(const Recording& recording, int threads = 1);
 
 // The particles of another recording of the object, where they are in frame 0 of the clouds: moved
 // there as a rigid body with the controllers, then within a second with the controllers and the
 // first cloud. What the cloud does not show stays, if the known shape is near the one there. 3 x
 // particles, m, interior ones included. Throws Error as FollowClouds does, where the numbers of
 // controllers differ, and where the first cloud is not where that has brought them.
-Points CarryOver(const Recording& known, const Recording& clouds);
+Points CarryOver(const Recording& known, const Recording& clouds, int threads = 1);
 
 }  // namespace physpring
 

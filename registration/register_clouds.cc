@@ -84,9 +84,9 @@ Points ShapeOf(const Recording& rough, const std::vector<Points>& position) {
 }
 
 // Throws Error unless the particles are enough for a body.
-RegisteredClouds Register(const Recording& recording) {
+RegisteredClouds Register(const Recording& recording, int threads) {
   ExpectEnough(recording, recording.point_count(), kFewestSeen);
-  return TellPoints(recording, FollowClouds(recording));
+  return TellPoints(recording, FollowClouds(recording, threads));
 }
 
 }  // namespace
@@ -108,29 +108,31 @@ void ExpectEnough(const Recording& clouds, int points, int fewest) {
                           points, fewest));
 }
 
-RegisteredClouds RegisterClouds(const Recording& clouds, int points) {
+RegisteredClouds RegisterClouds(const Recording& clouds, int points, int threads) {
   points = PointsToMake(clouds, points, kPerSeen);
   const int few = std::max(kFewestSeen, static_cast<int>(kRoughPart * points));
   const Points first = PointsOf(clouds.surface[0]), kept = WithoutOutliers(first);
   const Recording rough = AtRestInFrame0(clouds, SpreadParticles(kept, few));
-  const Points shape = ShapeOf(rough, FollowClouds(rough));
-  RegisteredClouds registered = Register(AtRestInFrame0(clouds, SpreadParticles(shape, points)));
+  const Points shape = ShapeOf(rough, FollowClouds(rough, threads));
+  RegisteredClouds registered =
+      Register(AtRestInFrame0(clouds, SpreadParticles(shape, points)), threads);
   registered.outliers = static_cast<int>(first.cols() - kept.cols());
   return registered;
 }
 
-RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points) {
+RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points,
+                                  int threads) {
   points = PointsToMake(clouds, points, kPerSeenOfShape);
-  return Register(AtRestInFrame0(clouds, SpreadParticles(surface, points)));
+  return Register(AtRestInFrame0(clouds, SpreadParticles(surface, points)), threads);
 }
 
-RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known) {
+RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known, int threads) {
   ExpectSeen(clouds, kFewestSeen);
   Recording recording =
-      WithParticles(clouds, CarryOver(known, clouds), known.rest, known.interior_count());
+      WithParticles(clouds, CarryOver(known, clouds, threads), known.rest, known.interior_count());
   recording.rest_given = true;
   recording.rod = known.rod;
-  return Register(recording);
+  return Register(recording, threads);
 }
 
 }  // namespace physpring

@@ -24,16 +24,18 @@ void ExpectEnough(const Recording& clouds, int points, int fewest);
 
 // `clouds`: a recording with `surface`. `points`: how many to make; 0: half as many again as a
 // cloud has, 400 at most. Throws Error where frame 0 shows too little for a body, and where the
-// body diverges.
-RegisteredClouds RegisterClouds(const Recording& clouds, int points);
+// body diverges. The result does not depend on the number of threads.
+RegisteredClouds RegisterClouds(const Recording& clouds, int points, int threads = 1);
 
 // The same where the shape is known: `surface` are points all over the object as it is in frame 0,
 // 3 x any number, m. The particles are spread over them, also where no cloud shows any; 0: three
 // times as many as a cloud has.
-RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points);
+RegisteredClouds RegisterCloudsOn(const Recording& clouds, const Points& surface, int points,
+                                  int threads = 1);
 
 // The same with the points of `known`, another recording of the object, and its interior particles.
-RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known);
+RegisteredClouds RegisterCloudsLike(const Recording& clouds, const Recording& known,
+                                    int threads = 1);
 
 }  // namespace physpring
 

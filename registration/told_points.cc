@@ -7,14 +7,16 @@
 
 #include "registration/followed_body.h"
 #include "tracker/soft_match.h"
+#include "twin/checks/motion_scale.h"
 
 namespace physpring {
 namespace {
 
 constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that is not lost
-// A cloud is further off than it may be where it is so many times as far as the first one, if that
+// A cloud is further off than it may be where it is so many times as far as the first ones, if that
 // is so many widths of a match.
-constexpr double kFurther = 1.5, kFurtherWidths = 1.25;
+constexpr double kFurther = 1.35, kFurtherWidths = 1.25;
+constexpr std::size_t kFirst = 5;  // frames, in which no body is lost yet
 // as soft_match.h names it; the fewest points of a cloud that tell of a particle
 constexpr double kNone = 0.05, kFewestPoints = 0.3;
 
@@ -29,6 +31,19 @@ int LostFrom(const std::vector<int>& lost, const std::vector<int>& found) {
   return lost.back();
 }
 
+// How far a cloud may be from a body that is not lost, m.
+double MostDistance(const std::vector<Points>& position, const std::vector<Points>& clouds,
+                    double width) {
+  std::vector<double> first;
+  for (std::size_t t = 1; t < position.size() && first.size() < kFirst; ++t) {
+    const double distance = UsualDistance(DistancesToNearest(position[t], clouds[t]));
+    if (std::isfinite(distance)) first.push_back(distance);
+  }
+  if (first.empty()) return kLostWidths * width;
+  const double further = kFurther * Quantile(0.5, std::move(first));
+  return std::min(kLostWidths * width, std::max(further, kFurtherWidths * width));
+}
+
 }  // namespace
 
 RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points>& position) {
@@ -36,10 +51,7 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
   registered.recording = recording;
   const double width = MatchWidth(position[0]);
   const Eigen::VectorXd alike = Eigen::VectorXd::Ones(recording.particle_count());
-  const double first =
-      UsualDistance(DistancesToNearest(position[0], recording.surface[0]));  // NaN of no cloud
-  const double most =
-      std::min(kLostWidths * width, std::fmax(kFurther * first, kFurtherWidths * width));
+  const double most = MostDistance(position, recording.surface, width);
   double seen = 0, all = 0;
   std::vector<int> lost, found;  // frames
   for (std::size_t t = 1; t < position.size(); ++t) {

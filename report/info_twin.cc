@@ -131,6 +131,13 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
   return json;
 }
 
+std::string DescribeFit(const Twin& twin) {
+  if (!twin.fit_errors) return "not said (not as it was trained, or a file of an older program)";
+  return DescribeFitErrors(*twin.fit_errors) + (twin.fit_errors->LeavesNoise()
+                                                    ? "; what is left is noise"
+                                                    : "; what is left is more than noise");
+}
+
 std::string RodInWords(const Rod& rod) {
   if (rod.empty()) return "";
   const int joints = RodJoints(rod);
@@ -161,12 +168,13 @@ std::string DescribeTwin(const Twin& twin) {
   std::string text = fmt::format(
       "object       {} points, {} interior particles, {} controllers{}\n"
       "trained on   {}\n"
+      "track error  {}\n"
       "controllers  {}\n"
       "ground       {}\n"
       "seed         {}\n"
       "options      {}\n",
       twin.points, twin.interior, twin.levels[0].system.controllers, RodInWords(twin.rod),
-      DescribeTraining(twin),
+      DescribeTraining(twin), DescribeFit(twin),
       twin.controller_velocity ? "dashpots feel their velocity"
                                : "dashpots take them as standing still (PhysTwin)",
       twin.ground.known ? DescribeGround(twin.ground.plane)
@@ -203,6 +211,7 @@ Json TwinToJson(const Twin& twin) {
           {"ground", ground},
           {"controller_velocity", twin.controller_velocity},
           {"trained_on", trained_on},
+          {"fit_errors", twin.fit_errors ? FitErrorsToJson(*twin.fit_errors) : Json(nullptr)},
           {"seed", twin.seed},
           {"options", ParseJson(twin.options_json, "options")},
           {"clock_offset_s", twin.clock_offset ? Json(*twin.clock_offset) : Json(nullptr)},

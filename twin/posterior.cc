@@ -139,6 +139,7 @@ Twin SampleOf(const Twin& twin, std::uint64_t seed, int index) {
   Twin sample = twin;
   sample.posterior = {};
   sample.material.reset();
+  sample.fit_errors.reset();
   sample.training_state.clear();
   for (int level = 0; level < static_cast<int>(twin.levels.size()); ++level) {
     TwinLevel& one = sample.levels[static_cast<std::size_t>(level)];

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "twin/controller_mask.h"
+#include "twin/fit_errors.h"
 #include "twin/linear_predictor.h"
 #include "twin/material.h"
 #include "twin/npz.h"
@@ -67,7 +68,9 @@ struct Twin {
   std::optional<double> force_scale;
 
   std::vector<TrainedOn> trained_on;
-  std::string options_json = "{}";  // the options it was trained with, a compact JSON object
+  std::optional<FitErrors> fit_errors;  // of level 0 as its training ended; files of older programs
+                                        // do not say
+  std::string options_json = "{}";      // the options it was trained with, a compact JSON object
   std::uint64_t seed = 0;
 
   // What it says of its training on the recording of that hash; null if it was not trained on it.

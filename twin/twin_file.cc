@@ -127,6 +127,7 @@ std::string StoreMeta(const Twin& twin, const std::string& path) {
                {"seed", twin.seed},
                {"options", options.json()}};
   if (twin.material) meta["material"] = MaterialToJson(*twin.material);
+  if (twin.fit_errors) meta["fit_errors"] = FitErrorsToJson(*twin.fit_errors);
   if (twin.clock_offset) meta["clock_offset_s"] = *twin.clock_offset;
   if (twin.force_scale) meta["force_scale"] = *twin.force_scale;
   // a file name need not be UTF-8
@@ -198,7 +199,7 @@ std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string&
   }
   meta.ExpectOnly({"format", "version", "program", "units", "name", "levels", "points", "interior",
                    "controllers", "controller_velocity", "recordings", "seed", "options",
-                   "material", "clock_offset_s", "force_scale"});
+                   "material", "fit_errors", "clock_offset_s", "force_scale"});
   twin.name = meta.Text("name");
   twin.points = meta.Count("points");
   twin.interior = meta.Count("interior");
@@ -209,6 +210,7 @@ std::pair<std::size_t, int> ReadMeta(const NpzFields& arrays, const std::string&
   twin.seed = meta.Unsigned("seed");
   twin.options_json = meta.Object("options").Dump();
   if (meta.Has("material")) twin.material = MaterialFromJson(meta.Object("material"));
+  if (meta.Has("fit_errors")) twin.fit_errors = FitErrorsFromJson(meta.Object("fit_errors"));
   if (meta.Has("clock_offset_s")) twin.clock_offset = meta.Number("clock_offset_s");
   if (meta.Has("force_scale")) twin.force_scale = meta.Number("force_scale");
   const int levels = meta.Count("levels");

@@ -62,14 +62,12 @@ GivenTwin Train(const GivenRecordings& recordings, const Wishes& wishes,
     checkpoint.ExpectReplaceable(wishes.resume || wishes.force);
   }
   TrainingRun run;
-  FitReport report;
   RunWatched(callback, [&](const TellShare& tell) {
     run = RunTraining(task, checkpoint, wishes.resume, wishes.checkpoint_interval, tell);
     if (run.stopped) throw Stopped();
-    report = JudgeTraining(task, run.twin);
     tell(1, run.status);
   });
-  Warn(report.warnings);
+  Warn(run.fit.warnings);
   if (wishes.output.empty()) run.twin.name = recordings[0]->recording.name;
   const std::string path = wishes.output.empty() ? run.twin.name : wishes.output;
   return {path, run.twin};

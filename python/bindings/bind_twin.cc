@@ -52,6 +52,18 @@ nb::object PosteriorOf(const GivenTwin& given) {
   return arrays;
 }
 
+nb::object FitErrorsOf(const GivenTwin& given) {
+  if (!given.twin.fit_errors) return nb::none();
+  const FitErrors& errors = *given.twin.fit_errors;
+  nb::dict values;
+  values["track"] = errors.track;
+  values["motionless"] = errors.motionless;
+  values["later"] = errors.later;
+  values["noise"] = errors.noise;
+  values["correlation"] = errors.correlation;
+  return values;
+}
+
 std::vector<GivenTwin> SamplesOf(const GivenTwin& given, int count, std::uint64_t seed) {
   constexpr int kMost = 10000;
   if (count < 0 || count > kMost) {
@@ -207,6 +219,11 @@ void BindTwin(nb::module_& module) {
       "(4,) a, b, c, d of the plane a x + b y + c z = d, or None.", kHasOwner);
   twin.def_prop_ro("clock_offset", [](const Class& self) { return self.twin.clock_offset; });
   twin.def_prop_ro("force_scale", [](const Class& self) { return self.twin.force_scale; });
+  twin.def_prop_ro(
+      "fit_errors", &FitErrorsOf,
+      "How well level 0 predicted what it was trained on, a dict, or None where the file does not\n"
+      "say: `track`, `motionless` and `later` (None without later frames), mean distances in m;\n"
+      "`noise` of a coordinate, m; `correlation` of the errors of one frame and the next.");
   twin.def_prop_ro("_options_json", [](const Class& self) { return self.twin.options_json; });
   twin.def_prop_ro(
       "trained_on",

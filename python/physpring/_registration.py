@@ -34,7 +34,7 @@ def register(clouds: RecordingLike,
     refine: fit twins to the points, and name them anew where those predict them; some minutes.
     markers: the points are markers, the same ones in each frame in any order. rod: they are along a
         rod; number them along it.
-    callback, threads: of `refine`, as of `train`.
+    callback: of `refine`, as of `train`. threads: as of `train`.
 
     Returns the clouds' recording with `points`. Where they are lost, or may be wrong, is a
     PhyspringWarning. Raises Error for what the program would refuse.

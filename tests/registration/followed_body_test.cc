@@ -76,5 +76,11 @@ TEST(FollowClouds, StretchesWithTheObject) {
   EXPECT_LT(OffTruth(band), 5e-3);
 }
 
+TEST(FollowClouds, DoesNotDependOnTheThreads) {
+  const Recording rope = SwungRope(12, 20);
+  const Recording clouds = AtRestInFrame0(CloudsOf(rope), rope.points[0]);
+  EXPECT_EQ(FollowClouds(clouds, 1), FollowClouds(clouds, 3));
+}
+
 }  // namespace
 }  // namespace physpring

@@ -103,6 +103,31 @@ TEST_F(TwinFile, KeepsTheMaterial) {
   EXPECT_THROW(WriteTwin(twin, path_), Error) << "the value is below its lower bound";
 }
 
+TEST_F(TwinFile, KeepsTheErrorsOfItsFit) {
+  Twin twin = MakeTwin();
+  EXPECT_FALSE(ReadTwin(path_).fit_errors) << "files of older programs have none";
+  for (const std::optional<double> later : {std::optional<double>(0.003), std::optional<double>()}) {
+    twin.fit_errors = FitErrors{1.0 / 3, 0.09, later, 7e-4, 0.05};
+    WriteTwin(twin, path_);
+    const std::optional<FitErrors> read = ReadTwin(path_).fit_errors;
+    ASSERT_TRUE(read);
+    EXPECT_EQ(FitErrorsToJson(*read), FitErrorsToJson(*twin.fit_errors));
+    EXPECT_EQ(read->later, later);
+  }
+}
+
+TEST(FitErrors, AreDescribed) {
+  FitErrors errors{1.234e-3, 0.05, std::nullopt, 7e-4, 0.05};
+  EXPECT_EQ(DescribeFitErrors(errors),
+            "on the fit frames: 1.234 mm (a motionless body: 50.000 mm)");
+  EXPECT_TRUE(errors.LeavesNoise());
+  errors.later = 2e-3;
+  errors.correlation = 0.5;
+  EXPECT_EQ(DescribeFitErrors(errors),
+            "on the fit frames: 1.234 mm (a motionless body: 50.000 mm); on the later ones: 2.000 mm");
+  EXPECT_FALSE(errors.LeavesNoise());
+}
+
 TEST_F(TwinFile, KeepsThePosterior) {
   EXPECT_TRUE(ReadTwin(path_).posterior.empty()) << "files of older programs have none";
   Twin twin = MakeTwin();

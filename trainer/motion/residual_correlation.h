@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "trainer/motion/rollout.h"
+#include "twin/fit_errors.h"
 
 namespace physpring {
 
-// Errors that correlate less are noise. Those of true bodies that are networks have -0.01 to 0.04,
-// those of side valleys 0.4 to 0.9.
-inline constexpr double kNoiseCorrelation = 0.1;
-// With a body whose errors correlate less, nothing else is tried.
+// With a body whose errors correlate less, nothing else is tried (kNoiseCorrelation of
+// twin/fit_errors.h says what is noise).
 inline constexpr double kSurelyNoise = 0.01;
 
 // How much alike a free motion's errors are in a frame and in the next one: their autocorrelation
