@@ -80,7 +80,7 @@ bool HasCloudsAlone(const NpzFields& fields) {
 
 std::vector<Points> ReadClouds(NpzFields& fields, const std::string& path, Recording& recording) {
   std::vector<Points> clouds = fields.FramesWithUnseen("surface", "S");
-  const std::string none = TakeZerosAsNone(path + ": array 'surface'", &clouds);
+  const std::string none = TakeFillingAsNone(path + ": array 'surface'", &clouds);
   if (!none.empty()) recording.warnings.push_back(none);
   return clouds;
 }

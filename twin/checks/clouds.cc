@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
+#include <optional>
+#include <set>
 
 #include "twin/checks/motion_scale.h"
 #include "twin/checks/plausibility.h"
@@ -50,24 +54,60 @@ int FramesWithoutPoints(const std::vector<Points>& clouds) {
   }));
 }
 
+using Place = std::array<double, 3>;
+
+Place PlaceOf(const Points& cloud, Eigen::Index i) {
+  return {cloud(0, i), cloud(1, i), cloud(2, i)};
+}
+
+std::set<Place> PlacesOfSeveral(const Points& cloud) {
+  std::vector<Place> places;
+  for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+    if (IsPoint(cloud, i)) places.push_back(PlaceOf(cloud, i));
+  }
+  std::sort(places.begin(), places.end());
+  std::set<Place> several;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    if (places[i] == places[i - 1]) several.insert(places[i]);
+  }
+  return several;
+}
+
 }  // namespace
 
-std::string TakeZerosAsNone(const std::string& where, std::vector<Points>* clouds) {
-  const auto zeros = [](const Points& cloud) {
-    return (cloud.array() == 0).colwise().all().count();
-  };
-  if (std::none_of(clouds->begin(), clouds->end(),
-                   [&](const Points& cloud) { return zeros(cloud) > 1; })) {
-    return "";
+std::string TakeFillingAsNone(const std::string& where, std::vector<Points>* clouds) {
+  std::map<Place, int> crowded;  // in so many frames there are several points
+  for (const Points& cloud : *clouds) {
+    for (const Place& place : PlacesOfSeveral(cloud)) ++crowded[place];
   }
-  Eigen::Index count = 0;
+  if (crowded.empty()) return "";
+  const Place origin{0, 0, 0};
+  std::optional<Place> filling;
+  int filled = 0, again = 0;
   for (Points& cloud : *clouds) {
-    count += zeros(cloud);
-    for (auto point : cloud.colwise()) {
-      if (point.isZero(0)) point.setConstant(std::numeric_limits<double>::quiet_NaN());
+    std::set<Place> there;
+    for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+      if (!IsPoint(cloud, i)) continue;
+      const Place place = PlaceOf(cloud, i);
+      const auto found = crowded.find(place);
+      if (found == crowded.end()) continue;
+      const bool fills = found->second > 1 || place == origin;
+      if (!fills && there.insert(place).second) continue;
+      cloud.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      if (fills) filling = place;
+      ++(fills ? filled : again);
     }
   }
-  return fmt::format("{}: {} points are exactly at the origin, taken as none", where, count);
+  std::string line;
+  if (filling) {
+    line = fmt::format("{} points are exactly at ({:g}, {:g}, {:g}), taken as none", filled,
+                       (*filling)[0], (*filling)[1], (*filling)[2]);
+  }
+  if (again > 0) {
+    line += fmt::format("{}{} points are there more than once in a frame, taken once",
+                        line.empty() ? "" : "; ", again);
+  }
+  return where + ": " + line;
 }
 
 std::vector<std::string> FindOddClouds(const Recording& recording) {

@@ -10,10 +10,10 @@
 
 namespace physpring {
 
-// Where frames have two or more points that are exactly at the origin, those fill an array up: they
-// become NaN in all frames. Returns what it did, one line that begins with `where`; empty if it did
-// nothing.
-std::string TakeZerosAsNone(const std::string& where, std::vector<Points>* clouds);
+// Points that only fill an array up become NaN. A place where a frame has two or more points, to
+// the last bit, is no point in any frame if that is the origin, or so in several frames; else one
+// of them is. Returns what it did, one line that begins with `where`; empty if it did nothing.
+std::string TakeFillingAsNone(const std::string& where, std::vector<Points>* clouds);
 
 // What is odd about the clouds of a recording without points, a line each: frames without any,
 // units, a ground above them, controllers far from them.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace physpring {
 namespace {
@@ -66,13 +67,39 @@ TEST(Clouds, AreFarFromTheHands) {
 TEST(Clouds, AreFilledUpWithZeros) {
   Recording sheet = Sheet();
   sheet.surface[0].col(0).setZero();
-  EXPECT_EQ(TakeZerosAsNone("sheet.npz", &sheet.surface), "");  // one may be a point
+  EXPECT_EQ(TakeFillingAsNone("sheet.npz", &sheet.surface), "");  // one may be a point
   sheet.surface[3].rightCols(4).setZero();
-  EXPECT_EQ(TakeZerosAsNone("sheet.npz", &sheet.surface),
-            "sheet.npz: 5 points are exactly at the origin, taken as none");
+  EXPECT_EQ(TakeFillingAsNone("sheet.npz", &sheet.surface),
+            "sheet.npz: 5 points are exactly at (0, 0, 0), taken as none");
   EXPECT_TRUE(sheet.surface[0].col(0).array().isNaN().all());
   EXPECT_TRUE(sheet.surface[3].rightCols(4).array().isNaN().all());
   EXPECT_TRUE(sheet.surface[4].allFinite());
+}
+
+TEST(Clouds, AreFilledUpWithAConstant) {
+  Recording sheet = Sheet();
+  for (std::size_t t = 2; t < sheet.surface.size(); ++t) {
+    sheet.surface[t].rightCols(3).setConstant(-1);
+  }
+  sheet.surface[1].rightCols(1).setConstant(-1);  // alone there
+  const auto frames = static_cast<int>(sheet.surface.size());
+  EXPECT_EQ(TakeFillingAsNone("sheet.npz", &sheet.surface),
+            "sheet.npz: " + std::to_string(3 * (frames - 2) + 1) +
+                " points are exactly at (-1, -1, -1), taken as none");
+  EXPECT_TRUE(sheet.surface[2].rightCols(3).array().isNaN().all());
+  EXPECT_TRUE(sheet.surface[1].rightCols(1).array().isNaN().all());
+  EXPECT_TRUE(sheet.surface[0].allFinite());
+}
+
+TEST(Clouds, AreFilledUpWithTheirLastPoint) {
+  Recording sheet = Sheet();
+  Points& cloud = sheet.surface[2];
+  const Eigen::Index last = cloud.cols() - 1;
+  cloud.rightCols(3).colwise() = Eigen::Vector3d(cloud.col(last - 3));
+  EXPECT_EQ(TakeFillingAsNone("sheet.npz", &sheet.surface),
+            "sheet.npz: 3 points are there more than once in a frame, taken once");
+  EXPECT_TRUE(cloud.leftCols(last - 2).allFinite());
+  EXPECT_TRUE(cloud.rightCols(3).array().isNaN().all());
 }
 
 }  // namespace
