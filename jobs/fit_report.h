@@ -16,7 +16,7 @@ namespace physpring {
 
 struct FitReport {
   std::optional<FitErrors> errors;  // none where the fit frames have no data
-  std::string line;                 // the errors on the fit frames and after them; is what is left noise
+  std::string line;  // the errors on the fit frames and after them; is what is left noise
   std::vector<std::string> warnings;  // a useless twin, and a baseline that is nearer
 };
 

@@ -43,7 +43,8 @@ using TellProgress = std::function<void(double share, const std::string& status)
 FitReport JudgeTraining(const TrainingTask& task, const Twin& twin);
 
 // Writes `checkpoint` at most every `interval` seconds, and at the end. Goes on from it if
-// `resume`. The finished twin is judged, and says how well it fits. Each step and checkpoint is a line of the log (spdlog's default logger).
+// `resume`. The finished twin is judged, and says how well it fits. Each step and checkpoint is a
+// line of the log (spdlog's default logger).
 TrainingRun RunTraining(const TrainingTask& task, const Checkpoint& checkpoint, bool resume,
                         double interval, const TellProgress& progress);
 

@@ -106,7 +106,8 @@ TEST_F(TwinFile, KeepsTheMaterial) {
 TEST_F(TwinFile, KeepsTheErrorsOfItsFit) {
   Twin twin = MakeTwin();
   EXPECT_FALSE(ReadTwin(path_).fit_errors) << "files of older programs have none";
-  for (const std::optional<double> later : {std::optional<double>(0.003), std::optional<double>()}) {
+  for (const std::optional<double> later :
+       {std::optional<double>(0.003), std::optional<double>()}) {
     twin.fit_errors = FitErrors{1.0 / 3, 0.09, later, 7e-4, 0.05};
     WriteTwin(twin, path_);
     const std::optional<FitErrors> read = ReadTwin(path_).fit_errors;
@@ -123,8 +124,9 @@ TEST(FitErrors, AreDescribed) {
   EXPECT_TRUE(errors.LeavesNoise());
   errors.later = 2e-3;
   errors.correlation = 0.5;
-  EXPECT_EQ(DescribeFitErrors(errors),
-            "on the fit frames: 1.234 mm (a motionless body: 50.000 mm); on the later ones: 2.000 mm");
+  EXPECT_EQ(
+      DescribeFitErrors(errors),
+      "on the fit frames: 1.234 mm (a motionless body: 50.000 mm); on the later ones: 2.000 mm");
   EXPECT_FALSE(errors.LeavesNoise());
 }
 

@@ -55,22 +55,27 @@ int FramesWithoutPoints(const std::vector<Points>& clouds) {
 }
 
 using Place = std::array<double, 3>;
+constexpr Place kOrigin{0, 0, 0};
 
 Place PlaceOf(const Points& cloud, Eigen::Index i) {
   return {cloud(0, i), cloud(1, i), cloud(2, i)};
 }
 
-std::set<Place> PlacesOfSeveral(const Points& cloud) {
+// Where a cloud has more points than can be, to the last bit.
+std::set<Place> CrowdedPlaces(const Points& cloud) {
+  constexpr int kMany = 3, kManyAtOrigin = 2;
   std::vector<Place> places;
   for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
     if (IsPoint(cloud, i)) places.push_back(PlaceOf(cloud, i));
   }
   std::sort(places.begin(), places.end());
-  std::set<Place> several;
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    if (places[i] == places[i - 1]) several.insert(places[i]);
+  std::set<Place> crowded;
+  for (auto first = places.begin(); first != places.end();) {
+    const auto end = std::upper_bound(first, places.end(), *first);
+    if (end - first >= (*first == kOrigin ? kManyAtOrigin : kMany)) crowded.insert(*first);
+    first = end;
   }
-  return several;
+  return crowded;
 }
 
 }  // namespace
@@ -78,10 +83,9 @@ std::set<Place> PlacesOfSeveral(const Points& cloud) {
 std::string TakeFillingAsNone(const std::string& where, std::vector<Points>* clouds) {
   std::map<Place, int> crowded;  // in so many frames there are several points
   for (const Points& cloud : *clouds) {
-    for (const Place& place : PlacesOfSeveral(cloud)) ++crowded[place];
+    for (const Place& place : CrowdedPlaces(cloud)) ++crowded[place];
   }
   if (crowded.empty()) return "";
-  const Place origin{0, 0, 0};
   std::optional<Place> filling;
   int filled = 0, again = 0;
   for (Points& cloud : *clouds) {
@@ -91,7 +95,7 @@ std::string TakeFillingAsNone(const std::string& where, std::vector<Points>* clo
       const Place place = PlaceOf(cloud, i);
       const auto found = crowded.find(place);
       if (found == crowded.end()) continue;
-      const bool fills = found->second > 1 || place == origin;
+      const bool fills = found->second > 1 || place == kOrigin;
       if (!fills && there.insert(place).second) continue;
       cloud.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
       if (fills) filling = place;

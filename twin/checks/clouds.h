@@ -10,9 +10,10 @@
 
 namespace physpring {
 
-// Points that only fill an array up become NaN. A place where a frame has two or more points, to
-// the last bit, is no point in any frame if that is the origin, or so in several frames; else one
-// of them is. Returns what it did, one line that begins with `where`; empty if it did nothing.
+// Points that only fill an array up become NaN: a place where a frame has three or more of them (at
+// the origin two), to the last bit, is no point in any frame if it is the origin, or so in several
+// frames; else one of them is. Returns what it did, one line that begins with `where`; empty if it
+// did nothing.
 std::string TakeFillingAsNone(const std::string& where, std::vector<Points>* clouds);
 
 // What is odd about the clouds of a recording without points, a line each: frames without any,
