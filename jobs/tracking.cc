@@ -34,6 +34,11 @@ std::vector<std::string> WarningsOf(const TrackedMotion& motion) {
   }
   if (motion.cloud && motion.cloud->distance > kWorse * motion.predicted_cloud_distance) {
     warnings.emplace_back("the prediction without any measurement is nearer to the clouds");
+  } else if (motion.cloud && motion.predicted_cloud_distance > motion.cloud->spacing) {
+    warnings.push_back(fmt::format(
+        "without measurements the twin ends {:.0f} mm from the clouds: it is poor, or clouds and "
+        "controllers are not of its object or of one clock; then particles may slide along it",
+        1e3 * motion.predicted_cloud_distance));
   }
   if (errors.tracked > kWorse * errors.predicted) {
     warnings.emplace_back("measurements make it worse than the prediction without any");

@@ -132,7 +132,8 @@ Json ToJson(const TwinLevel& level, std::size_t number) {
 }
 
 std::string DescribeFit(const Twin& twin) {
-  if (!twin.fit_errors) return "not said (not as it was trained, or a file of an older program)";
+  if (!twin.fit_errors)
+    return "not known: not trained to its end, changed since, or of an older program";
   return DescribeFitErrors(*twin.fit_errors) + (twin.fit_errors->LeavesNoise()
                                                     ? "; what is left is noise"
                                                     : "; what is left is more than noise");

@@ -22,7 +22,7 @@ constexpr double kMoves = 2;           // a motion is larger than so many times 
 constexpr double kLeastMotion = 1e-5;  // m
 constexpr double kBelowGround = 2;     // spacings
 constexpr double kSteepGround = 0.85;  // cosine of the angle between its normal and gravity
-constexpr double kLeastExplained = 0.5;
+constexpr double kLeastExplained = 0.55;
 constexpr double kBeyondNoise = 6;  // errors nearer to the noise are good, whatever moves
 
 using Lines = std::vector<std::string>;

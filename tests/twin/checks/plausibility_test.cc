@@ -109,6 +109,7 @@ TEST(Oddities, TellALyingObjectWithoutAGround) {
 
 TEST(TooLittle, IsExplainedByATwinThatLeavesHalf) {
   EXPECT_EQ(TooLittleExplained(0.04, 0.1, 5e-4), "");
+  EXPECT_THAT(TooLittleExplained(0.048, 0.1, 5e-4), HasSubstr("explains 52 %"));
   EXPECT_THAT(TooLittleExplained(0.08, 0.1, 5e-4),
               HasSubstr("explains 20 % of the motion (80 of 100"));
   EXPECT_THAT(TooLittleExplained(0.2, 0.1, 5e-4), HasSubstr("explains 0 %"));
