@@ -18,9 +18,8 @@ class SideBySide {
   SideBySide(const SpringMassSystem& system, const Environment& environment,
              const SimulationOptions& options, int count);
 
-  NodeStates<double> MakeState(const Points& position, const Points& velocity) const {
-    return simulator_.MakeState(position, velocity);
-  }
+  // Makes states and reads them.
+  const Simulator<double>& simulator() const { return simulator_; }
 
   // `states`: `count` of them.
   void AdvanceFrame(const FrameInput& input, const std::vector<NodeStates<double>*>& states);

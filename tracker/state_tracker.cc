@@ -19,40 +19,26 @@ constexpr double kWidth = 0.4;  // of a match in the end, in the nodes' spacing
 constexpr double kNarrower = 0.5, kSurprise = 2, kWidest = 3;
 constexpr double kNone = 0.05;  // soft_match.h
 
-Points PositionsOf(const NodeStates<double>& state, Eigen::Index nodes) {
-  Points position(3, nodes);
-  for (Eigen::Index i = 0; i < nodes; ++i) {
-    for (int j = 0; j < 3; ++j) position(j, i) = state[static_cast<std::size_t>(i)].x[j];
-  }
-  return position;
-}
-
 }  // namespace
 
-StateTracker::StateTracker(std::shared_ptr<const SmoothCorrection> correction, double fps,
-                           const TrackerOptions& options, const NodeStates<double>& start,
-                           int nodes)
+StateTracker::StateTracker(const Simulator<double>& simulator,
+                           std::shared_ptr<const SmoothCorrection> correction,
+                           const TrackerOptions& options, const Points& nodes,
+                           const Points& velocity)
     : options_(options),
-      fps_(fps),
+      fps_(1 / simulator.options().frame_time),
+      simulator_(simulator),
       correction_(std::move(correction)),
-      seen_(nodes, options.surface),
-      state_(start),
-      position_(PositionsOf(start, nodes)),
-      predicted_(position_) {
-  const double spacing = nodes > 1 ? MedianSpacing(position_) : options.noise;
+      seen_(simulator.node_count(), options.surface),
+      state_(simulator.MakeState(nodes, velocity)),
+      position_(nodes),
+      predicted_(nodes) {
+  const double spacing = nodes.cols() > 1 ? MedianSpacing(nodes) : options.noise;
   width_ = std::max(kWidth * spacing, options.noise);
 }
 
-Points StateTracker::velocity() const {
-  Points velocity(3, position_.cols());
-  for (Eigen::Index i = 0; i < velocity.cols(); ++i) {
-    for (int j = 0; j < 3; ++j) velocity(j, i) = state_[static_cast<std::size_t>(i)].v[j];
-  }
-  return velocity;
-}
-
 void StateTracker::Correct(const FrameMeasurement& measured) {
-  predicted_ = PositionsOf(state_, position_.cols());
+  predicted_ = simulator_.Positions(state_);
   if (!predicted_.allFinite()) {
     position_ = predicted_;
     surprise_ = std::numeric_limits<double>::infinity();
@@ -129,7 +115,7 @@ void StateTracker::Move(const Points& displacement, double velocity_gain) {
       node.v[j] += velocity_gain * fps_ * displacement(j, i);
     }
   }
-  position_ = predicted_ + displacement;
+  position_ = simulator_.Positions(state_);
 }
 
 }  // namespace physpring

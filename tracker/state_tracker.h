@@ -15,7 +15,7 @@
 
 #include "tracker/seen_nodes.h"
 #include "tracker/smooth_correction.h"
-#include "twin/node_state.h"
+#include "twin/simulator.h"
 
 namespace physpring {
 
@@ -35,10 +35,11 @@ struct TrackerOptions {
 
 class StateTracker {
  public:
-  // `correction`: that of the body's system. `fps`: frames a second. `start`: the state at first.
-  // `nodes`: how many of it are nodes.
-  StateTracker(std::shared_ptr<const SmoothCorrection> correction, double fps,
-               const TrackerOptions& options, const NodeStates<double>& start, int nodes);
+  // `simulator`: that of the body; it outlives the tracker. `correction`: that of its system.
+  // `nodes`: where the nodes are at first, 3 x nodes, m. `velocity`: m/s, alike.
+  StateTracker(const Simulator<double>& simulator,
+               std::shared_ptr<const SmoothCorrection> correction, const TrackerOptions& options,
+               const Points& nodes, const Points& velocity);
 
   // That of the last frame as it was corrected, to be moved on to the next frame.
   NodeStates<double>* state() { return &state_; }
@@ -46,8 +47,8 @@ class StateTracker {
   // After that. A motion that diverges is not finite from then on.
   void Correct(const FrameMeasurement& measured);
 
-  const Points& position() const { return position_; }  // 3 x nodes, m, corrected
-  Points velocity() const;                              // 3 x nodes, m/s
+  const Points& position() const { return position_; }               // 3 x nodes, m, corrected
+  Points velocity() const { return simulator_.Velocities(state_); }  // 3 x nodes, m/s
   // How far the measurements of the last frame that had any were from their prediction, root mean
   // square of a coordinate, m; infinite before it and after a divergence. A point of a cloud that
   // belongs to no node counts as far.
@@ -71,6 +72,7 @@ class StateTracker {
 
   TrackerOptions options_;
   double fps_;
+  const Simulator<double>& simulator_;
   std::shared_ptr<const SmoothCorrection> correction_;
   SeenNodes seen_;
   double width_;  // of a match, m

@@ -24,10 +24,9 @@ TrackerBank::TrackerBank(const SpringMassSystem& system, const Environment& envi
       surprise_(kModelErrors.size(), 0),
       best_(kFirst) {
   const auto correction = std::make_shared<const SmoothCorrection>(system);
-  const NodeStates<double> start = simulators_->MakeState(nodes, velocity);
   for (double error : kModelErrors) {
-    trackers_.emplace_back(correction, fps_, TrackerOptions{noise, error, surface}, start,
-                           system.node_count());
+    trackers_.emplace_back(simulators_->simulator(), correction,
+                           TrackerOptions{noise, error, surface}, nodes, velocity);
   }
 }
 

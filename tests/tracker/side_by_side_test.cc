@@ -22,7 +22,7 @@ TEST(SideBySide, MovesEachStateAsItWouldMoveAlone) {
   std::vector<NodeStates<double>> a, b;
   for (int i = 0; i < kStates; ++i) {
     const Points velocity = Points::Constant(3, kParticles, 0.3 * i);
-    a.push_back(together.MakeState(rope.points[0], velocity));
+    a.push_back(together.simulator().MakeState(rope.points[0], velocity));
     b.push_back(alone.MakeState(rope.points[0], velocity));
   }
   for (int t = 1; t < kFrames; ++t) {
