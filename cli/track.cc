@@ -26,7 +26,7 @@ struct TrackArguments {
   TrackOptions options;
   bool force = false;
   bool stream = false;
-  StreamOptions stream_options;
+  LiveOptions stream_options;
 };
 
 void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
@@ -53,7 +53,11 @@ void PrintErrors(const TrackArguments& arguments, const TrackedMotion& motion) {
 }
 
 void Run(const TrackArguments& arguments) {
-  if (arguments.stream) return TrackStream(arguments.twin, arguments.stream_options);
+  if (arguments.stream) {
+    LiveOptions options = arguments.stream_options;
+    options.substeps = arguments.options.substeps;
+    return TrackStream(arguments.twin, options);
+  }
   ExpectOutputs({arguments.output}, {arguments.twin, arguments.recording});
   ExpectNew(arguments.output, arguments.force);
   const Twin trained = ReadTwin(arguments.twin);
@@ -121,6 +125,8 @@ void AddTrackCommand(CLI::App& app) {
       ->check(NumberBetween(1e-6, 1))
       ->needs(stream)
       ->type_name("M");
+  AddNumberOrAuto(command, "--substeps", &arguments->options.substeps,
+                  "a frame; fewer than it takes soften the stiffest nodes: faster, less exact");
   command->callback([arguments, recording, output] {
     if (!arguments->stream && (recording->empty() || output->empty())) {
       throw CLI::RequiredError("a recording and --output, or --stream");

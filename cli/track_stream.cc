@@ -84,10 +84,10 @@ void PrintState(int frame, const StateTracker& state) {
 
 }  // namespace
 
-void TrackStream(const std::string& twin_path, const StreamOptions& options) {
+void TrackStream(const std::string& twin_path, LiveOptions options) {
   const Twin twin = ReadTwin(twin_path);
   WarnOfTraining(twin, twin_path);
-  const double fps = options.fps > 0 ? options.fps : twin.fps;
+  if (options.fps == 0) options.fps = twin.fps;
   std::optional<LiveTracker> tracker;
   constexpr std::streamsize kLongest = 4 << 20;  // of a line
   std::vector<char> line(kLongest);
@@ -98,7 +98,7 @@ void TrackStream(const std::string& twin_path, const StreamOptions& options) {
       if (tracker) {
         tracker->Advance(measured);
       } else {
-        tracker.emplace(twin, fps, options.noise, measured);
+        tracker.emplace(twin, options, measured);
       }
     } catch (const Error& error) {
       throw Error(fmt::format("line {} of the input: {}", frame + 1, error.what()));

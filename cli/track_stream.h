@@ -6,16 +6,14 @@
 
 #include <string>
 
+#include "tracker/live_tracker.h"
+
 namespace physpring {
 
-struct StreamOptions {
-  double fps = 0;       // 0: that of the twin
-  double noise = 1e-3;  // m
-};
-
-// Follows the object of the twin in that file until the input ends. Throws Error, one line that
+// Follows the object of the twin in that file until the input ends. Without frames a second they
+// are those of the twin. Throws Error, one line that
 // says which one, where a line is not what docs/track.md says.
-void TrackStream(const std::string& twin, const StreamOptions& options);
+void TrackStream(const std::string& twin, LiveOptions options);
 
 }  // namespace physpring
 

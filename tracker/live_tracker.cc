@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "tracker/tracked_body.h"
 #include "twin/error.h"
 #include "twin/local_motion.h"
-#include "twin/predict.h"
 #include "twin/recorded_input.h"
 
 namespace physpring {
@@ -35,23 +35,24 @@ Points StartOf(const Twin& twin, const LiveFrame& first) {
 
 }  // namespace
 
-LiveTracker::LiveTracker(const Twin& twin, double fps, double noise, const LiveFrame& first)
+LiveTracker::LiveTracker(const Twin& twin, const LiveOptions& options, const LiveFrame& first)
     : points_(twin.points),
       controllers_(twin.levels[0].system.controllers),
-      fps_(fps),
+      fps_(options.fps),
       delay_(ControllerDelay(twin.levels[0].system)),
-      bank_(MakeBank(twin, noise, first)) {
-  lately_.fps = fps;
+      bank_(MakeBank(twin, options, first)) {
+  lately_.fps = fps_;
   lately_.controllers.push_back(first.controllers);
 }
 
-TrackerBank LiveTracker::MakeBank(const Twin& twin, double noise, const LiveFrame& first) const {
+TrackerBank LiveTracker::MakeBank(const Twin& twin, const LiveOptions& options,
+                                  const LiveFrame& first) const {
   ExpectNumbers(first);
-  const TwinLevel& level = twin.levels[0];
+  const TrackedBody body = BodyToTrack(twin.levels[0].system, fps_, options.substeps);
   const Points start = StartOf(twin, first);
-  return TrackerBank(level.system, {twin.gravity, twin.ground.plane},
-                     {1 / fps_, ChooseSubsteps(level, fps_, 0), twin.controller_velocity, {}},
-                     noise, twin.points, start, Points::Zero(3, start.cols()));
+  return TrackerBank(body.system, {twin.gravity, twin.ground.plane},
+                     {1 / fps_, body.substeps, twin.controller_velocity, {}}, options.noise,
+                     twin.points, start, Points::Zero(3, start.cols()));
 }
 
 void LiveTracker::ExpectNumbers(const LiveFrame& frame) const {

@@ -12,6 +12,12 @@
 
 namespace physpring {
 
+struct LiveOptions {
+  double fps = 0;       // of the frames
+  double noise = 1e-3;  // standard deviation of a measured coordinate, m
+  int substeps = 0;     // a frame (tracked_body.h); 0: as many as it takes
+};
+
 struct LiveFrame {
   FrameMeasurement measured;  // `named` of the twin's points, or of none; NaN: not seen
   Points controllers;         // 3 x controllers, m
@@ -20,10 +26,9 @@ struct LiveFrame {
 class LiveTracker {
  public:
   // Level 0 of the twin, at rest in the first frame. What is not seen there is where the points and
-  // controllers around it take it from the twin's reference configuration. `noise`: standard
-  // deviation of a measured coordinate, m. Throws Error, as Advance does, for a frame of other
-  // numbers of points or controllers than the twin's.
-  LiveTracker(const Twin& twin, double fps, double noise, const LiveFrame& first);
+  // controllers around it take it from the twin's reference configuration. Throws Error, as
+  // Advance does, for a frame of other numbers of points or controllers than the twin's.
+  LiveTracker(const Twin& twin, const LiveOptions& options, const LiveFrame& first);
 
   // Goes on to the next frame, 1 / fps later. Throws Error if the motion diverges.
   void Advance(const LiveFrame& frame);
@@ -32,7 +37,7 @@ class LiveTracker {
 
  private:
   void ExpectNumbers(const LiveFrame& frame) const;
-  TrackerBank MakeBank(const Twin& twin, double noise, const LiveFrame& first) const;
+  TrackerBank MakeBank(const Twin& twin, const LiveOptions& options, const LiveFrame& first) const;
 
   int points_, controllers_;
   double fps_, delay_;

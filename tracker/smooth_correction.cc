@@ -8,7 +8,7 @@
 namespace physpring {
 namespace {
 
-constexpr int kModes = 96;
+constexpr Eigen::Index kModes = 96, kCoarseModes = 24;
 
 // Of the free nodes; its mean diagonal is 1.
 Eigen::SparseMatrix<double> StiffnessLaplacian(const SpringMassSystem& system) {
@@ -36,24 +36,33 @@ Eigen::SparseMatrix<double> StiffnessLaplacian(const SpringMassSystem& system) {
 }  // namespace
 
 SmoothCorrection::SmoothCorrection(const SpringMassSystem& system) {
-  const Modes all = LowestModes(StiffnessLaplacian(system), std::min(kModes, system.node_count()));
+  const Modes all = LowestModes(StiffnessLaplacian(system),
+                                std::min(static_cast<int>(kModes), system.node_count()));
   const Eigen::Index kept = std::min<Eigen::Index>(kModes, all.values.size());
   modes_ = {all.values.head(kept).cwiseMax(0), all.vectors.leftCols(kept)};
 }
 
 Points SmoothCorrection::Solve(const Points& offset, const Eigen::VectorXd& precision,
-                               double model_error) const {
+                               double model_error, Detail detail) const {
   constexpr double kLeastPrecision = 1e-9;  // of the largest: a part that nothing holds stays
   const double largest = precision.size() > 0 ? precision.maxCoeff() : 0;
   if (!(largest > 0)) return Points::Zero(3, offset.cols());
-  const Eigen::MatrixXd weighted = precision.cwiseSqrt().asDiagonal() * modes_.vectors;
-  Eigen::MatrixXd normal = (modes_.values / model_error).cwiseAbs2().asDiagonal();
+  std::vector<Eigen::Index> measured;
+  for (Eigen::Index i = 0; i < precision.size(); ++i) {
+    if (precision[i] > 0) measured.push_back(i);
+  }
+  const Eigen::Index modes =
+      std::min(modes_.values.size(), detail == Detail::kCoarse ? kCoarseModes : kModes);
+  const auto shapes = modes_.vectors.leftCols(modes);
+  const Eigen::VectorXd root = precision(measured).cwiseSqrt();
+  const Eigen::MatrixXd weighted = root.asDiagonal() * shapes(measured, Eigen::all);
+  Eigen::MatrixXd normal = (modes_.values.head(modes) / model_error).cwiseAbs2().asDiagonal();
   normal.diagonal().array() += kLeastPrecision * largest;
   normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
-  const Eigen::MatrixXd right =
-      modes_.vectors.transpose() * (precision.asDiagonal() * offset.transpose());
+  const Points pull = offset(Eigen::all, measured) * root.asDiagonal();
+  const Eigen::MatrixXd right = weighted.transpose() * pull.transpose();
   const Eigen::MatrixXd q = normal.selfadjointView<Eigen::Lower>().llt().solve(right);
-  return (modes_.vectors * q).transpose();
+  return (shapes * q).transpose();
 }
 
 }  // namespace physpring

@@ -17,11 +17,15 @@ namespace physpring {
 
 class SmoothCorrection {
  public:
+  // Coarse: by a quarter of the modes, in a fraction of the time.
+  enum class Detail { kCoarse, kFull };
+
   explicit SmoothCorrection(const SpringMassSystem& system);
 
   // d, 3 x nodes, m. `offset`: r, 3 x nodes, m. `precision`: p, (nodes), 1/m^2, >= 0.
   // `model_error`: how far the prediction of a node is off that its neighbours are sure of, m.
-  Points Solve(const Points& offset, const Eigen::VectorXd& precision, double model_error) const;
+  Points Solve(const Points& offset, const Eigen::VectorXd& precision, double model_error,
+               Detail detail = Detail::kFull) const;
 
  private:
   Modes modes_;

@@ -89,8 +89,11 @@ Points StateTracker::DisplacementBy(const FrameMeasurement& measured) {
   for (;; width = std::max(width_, kNarrower * width)) {
     Pull pull = named;
     AddCloud(measured.cloud, moved, width, &pull);
-    moved = correction_->Solve(pull.offset, pull.precision, options_.model_error * unit);
-    if (width > width_) continue;
+    const bool last = width <= width_;
+    moved = correction_->Solve(
+        pull.offset, pull.precision, options_.model_error * unit,
+        last ? SmoothCorrection::Detail::kFull : SmoothCorrection::Detail::kCoarse);
+    if (!last) continue;
     Judge(pull, moved, unit);
     seen_.Learn(pull.count, 1 / fps_);
     return moved;

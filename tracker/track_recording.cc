@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "tracker/tracked_body.h"
 #include "tracker/tracker_bank.h"
 #include "twin/checks/motion_scale.h"
 #include "twin/error.h"
@@ -183,16 +184,17 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
                              const TrackOptions& options) {
   ExpectSameObject(twin, recording);
   ExpectSomethingToFollow(recording, options);
-  const TwinLevel& level = twin.levels[0];
+  const SpringMassSystem& system = twin.levels[0].system;
+  const TrackedBody body = BodyToTrack(system, recording.fps, options.substeps);
   TrackedMotion motion;
   motion.hidden = Hidden(recording, options);
   const std::vector<FrameMeasurement> told = ToldOf(recording, motion.hidden, options.cloud);
-  TrackerBank tracker(level.system, EnvironmentOf(recording),
-                      {1 / recording.fps, ChooseSubsteps(level, recording.fps, 0),
-                       twin.controller_velocity, LateGraspsOf(recording)},
-                      NoiseOf(told), recording.point_count(),
-                      recording.start.leftCols(recording.particle_count()), recording.velocity);
-  const double delay = ControllerDelay(level.system);
+  TrackerBank tracker(
+      body.system, EnvironmentOf(recording),
+      {1 / recording.fps, body.substeps, twin.controller_velocity, LateGraspsOf(recording)},
+      NoiseOf(told), recording.point_count(), recording.start.leftCols(recording.particle_count()),
+      recording.velocity);
+  const double delay = ControllerDelay(system);
   const auto begin = std::chrono::steady_clock::now();
   motion.position.push_back(tracker.best().position());
   motion.velocity.push_back(tracker.best().velocity());

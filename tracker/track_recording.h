@@ -18,6 +18,7 @@ struct TrackOptions {
   bool cloud = false;      // follow the recording's `surface` and not its points
   double hide = 0;         // this part of the points is not told, and judged by: 0 to 1, not 1
   std::uint64_t seed = 1;  // which points are hidden
+  int substeps = 0;        // a frame (tracked_body.h); 0: as many as it takes
 };
 
 // Mean distances from the points that are judged by, m, over all frames after frame 0 in which they

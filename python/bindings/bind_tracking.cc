@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/optional.h>
+
 #include <cmath>
+#include <optional>
 
 #include "jobs/tracking.h"
 #include "python/bindings/arrays.h"
@@ -12,14 +15,14 @@ namespace physpring {
 namespace {
 
 nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, double hide,
-               std::uint64_t seed) {
-  Recording recording = RecordingToTrack(Checked(twin), given.recording, {cloud, hide, seed});
+               std::uint64_t seed, std::optional<int> substeps) {
+  const TrackOptions options{cloud, hide, seed, substeps.value_or(0)};
+  Recording recording = RecordingToTrack(Checked(twin), given.recording, options);
   ExpectSameObject(twin.twin, recording);
   const Twin held = HeldAsIn(&recording, twin.twin);
   TrackedMotion motion;
-  RunWatched(nb::none(), [&](const TellShare& /*tell*/) {
-    motion = TrackRecording(held, recording, {cloud, hide, seed});
-  });
+  RunWatched(nb::none(),
+             [&](const TellShare& /*tell*/) { motion = TrackRecording(held, recording, options); });
   nb::dict result;
   result["position"] = CopyOf(motion.position);
   result["velocity"] = CopyOf(motion.velocity);
@@ -37,7 +40,7 @@ nb::dict Track(const GivenTwin& twin, const GivenRecording& given, bool cloud, d
 
 void BindTracking(nb::module_& module) {
   module.def("track", &Track, nb::arg("twin"), nb::arg("recording"), nb::arg("cloud"),
-             nb::arg("hide"), nb::arg("seed"));
+             nb::arg("hide"), nb::arg("seed"), nb::arg("substeps"));
 }
 
 }  // namespace physpring

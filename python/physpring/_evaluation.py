@@ -184,17 +184,20 @@ def track(twin: _core.Twin | str | os.PathLike,
           *,
           cloud: bool = False,
           hide: float = 0,
-          seed: int = 1) -> Track:
+          seed: int = 1,
+          substeps: int | None = None) -> Track:
     """Follows a twin's object through a recording that sees only a part of it, as `physpring track`
     does. cloud: follow the recording's `surface`, and judge by its points if it has any; without them
     the twin is placed in the first cloud. hide: this part of the
-    points is not told (0 to 0.95), and judged by; `seed` says which.
+    points is not told (0 to 0.95), and judged by; `seed` says which. substeps: a frame; fewer than
+    it takes soften the stiffest nodes, which is faster and less exact.
     """
+    _expect_counts(substeps=substeps)
     number('hide', hide, 0, 0.95)
     if cloud and hide > 0:
         raise _core.Error('hide is for points: with cloud=True all of them are hidden')
     one = one_recording(recording, 'heldout')
     try:
-        return Track(**_core.track(twin_of(twin), one, cloud, hide, seed_of(seed)))
+        return Track(**_core.track(twin_of(twin), one, cloud, hide, seed_of(seed), substeps))
     except _core.Error as error:
         raise _core.Error(in_words_of_python(str(error))) from None

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "tests/support/small_twin.h"
+#include "tracker/tracked_body.h"
 #include "twin/effects/registry.h"
 #include "twin/environment.h"
 #include "twin/error.h"
-#include "twin/predict.h"
 #include "twin/recorded_input.h"
 
 namespace physpring {
@@ -48,13 +48,13 @@ TEST_F(LiveTrackerTest, DoesWhatTheBankDoesWithARecording) {
     system.effects = {{"control_latency", Eigen::VectorXd::Constant(1, delay)}};
     TrackerBank bank(system, {twin_.gravity, twin_.ground.plane},
                      {1 / recording_.fps,
-                      ChooseSubsteps(twin_.levels[0], recording_.fps, 0),
+                      BodyToTrack(system, recording_.fps, 0).substeps,
                       twin_.controller_velocity,
                       {}},
                      kNoise, recording_.point_count(),
                      recording_.start.leftCols(recording_.particle_count()),
                      Points::Zero(3, recording_.particle_count()));
-    LiveTracker live(twin_, recording_.fps, kNoise, Frame(0));
+    LiveTracker live(twin_, {recording_.fps, kNoise}, Frame(0));
     // the interior is not measured
     const Points start = live.state().position();
     EXPECT_LT((start - bank.best().position()).cwiseAbs().maxCoeff(), 1e-9);
@@ -72,12 +72,12 @@ TEST_F(LiveTrackerTest, StartsWhereAPartOfItIsSeen) {
   LiveFrame first = Frame(0);
   const Points truth = recording_.points[0];
   for (int i = 0; i < truth.cols(); i += 2) first.measured.named.col(i).setConstant(std::nan(""));
-  const LiveTracker live(twin_, recording_.fps, kNoise, first);
+  const LiveTracker live(twin_, {recording_.fps, kNoise}, first);
   EXPECT_LT((live.state().position().leftCols(truth.cols()) - truth).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST_F(LiveTrackerTest, RefusesOtherNumbers) {
-  LiveTracker live(twin_, recording_.fps, kNoise, Frame(0));
+  LiveTracker live(twin_, {recording_.fps, kNoise}, Frame(0));
   const auto message = [&](const LiveFrame& frame) -> std::string {
     try {
       live.Advance(frame);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace physpring {
 namespace {
 
@@ -53,6 +55,19 @@ TEST(SmoothCorrection, FallsOffTowardsAController) {
   EXPECT_NEAR(d(2, 0), 0.02, 1e-3);
   for (int i = 0; i + 1 < 6; ++i) EXPECT_GT(d(2, i), d(2, i + 1)) << i;
   EXPECT_LT(d(2, 5), 0.01);
+}
+
+TEST(SmoothCorrection, SeesOnlyWhatIsWideCoarsely) {
+  constexpr int kNodes = 120;
+  const SmoothCorrection correction(Row(kNodes, false));
+  const Eigen::VectorXd precision = Eigen::VectorXd::Constant(kNodes, 1e6);
+  const auto coarse = SmoothCorrection::Detail::kCoarse;
+  Points wide = Points::Zero(3, kNodes);
+  for (int i = 0; i < kNodes; ++i) wide(2, i) = 0.02 * std::cos(M_PI * (i + 0.5) / kNodes);
+  EXPECT_TRUE(correction.Solve(wide, precision, 1, coarse).isApprox(wide, 1e-3));
+  const Points dent = Offset(kNodes, 60, {0, 0, 0.02});
+  EXPECT_LT(correction.Solve(dent, precision, 1e3, coarse)(2, 60), 0.3 * 0.02);
+  EXPECT_GT(correction.Solve(dent, precision, 1e3)(2, 60), 0.7 * 0.02);
 }
 
 TEST(SmoothCorrection, TrustsAGoodModelMore) {
