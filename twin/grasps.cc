@@ -7,7 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "twin/checks/motion_scale.h"
 #include "twin/local_motion.h"
+#include "twin/quiet_shape.h"
 #include "twin/recorded_rod.h"
 
 namespace physpring {
@@ -139,10 +141,12 @@ bool HasChangingGrasps(const Recording& recording) {
 void FindShapesWhenHeld(Recording* recording) {
   recording->shape_when_held.clear();
   const Points start = recording->start.leftCols(recording->particle_count());
+  const double noise = MeasurementNoise(recording->points);
   for (int t = 1; t < recording->held.rows(); ++t) {
     if (!(recording->held.row(t) && !recording->held.row(t - 1)).any()) continue;
     Points shape = Points::Constant(3, start.cols(), std::nan(""));
     shape.leftCols(recording->point_count()) = recording->points[static_cast<std::size_t>(t)];
+    shape = QuietShape(start, shape, noise);
     const LocalMotion motion(start, shape);
     for (Eigen::Index i = 0; i < shape.cols(); ++i) {
       if (!shape.col(i).allFinite())
