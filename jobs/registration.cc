@@ -32,10 +32,12 @@ RegisteredClouds RegisterOnShape(const Recording& clouds, const RegistrationOpti
 }
 
 void AddDoubts(const RegisteredClouds& registered, std::vector<std::string>* warnings) {
-  if (registered.lost_from) {
+  if (const auto& lost = registered.lost) {
+    const bool to_the_end = lost->last + 1 == registered.recording.frame_count();
     warnings->push_back(
-        fmt::format("it is lost from frame {} on: the clouds are not where the points are",
-                    *registered.lost_from));
+        fmt::format("it is lost {}: the clouds are not where the points are",
+                    to_the_end ? fmt::format("from frame {} on", lost->first)
+                               : fmt::format("in frames {} to {}", lost->first, lost->last)));
   }
   if (std::isnan(registered.fit.distance)) warnings->emplace_back("the last second has no cloud");
   if (registered.outliers > 0) {
@@ -95,7 +97,7 @@ CloudRegistration RegisterAsAsked(const Recording& clouds, const RegistrationOpt
   } else {
     registration.clouds = RegisterClouds(clouds, options.points, options.threads);
   }
-  if (options.refine && registration.clouds.lost_from) {
+  if (options.refine && registration.clouds.lost) {
     registration.warnings.emplace_back("not refined: a fit to points that are lost tells nothing");
   } else if (options.refine) {
     Refine(options.threads, progress, &registration);

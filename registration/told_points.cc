@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "registration/followed_body.h"
 #include "tracker/soft_match.h"
@@ -16,19 +17,29 @@ constexpr double kFewestTold = 0.05;  // of the points, in frames of a body that
 // A cloud is further off than it may be where it is so many times as far as the first ones, if that
 // is so many widths of a match.
 constexpr double kFurther = 1.35, kFurtherWidths = 1.25;
-constexpr std::size_t kFirst = 5;  // frames, in which no body is lost yet
+constexpr std::size_t kFirst = 5;      // frames, in which no body is lost yet
+constexpr double kShortestLoss = 0.2;  // s, and
+constexpr int kFewestLost = 3;         // frames
 // as soft_match.h names it; the fewest points of a cloud that tell of a particle
 constexpr double kNone = 0.05, kFewestPoints = 0.3;
 
-// The first frame from which on, to the end, more of the frames are lost (one or more) than found.
-int LostFrom(const std::vector<int>& lost, const std::vector<int>& found) {
-  for (int frame : lost) {
-    const auto from = [&](const std::vector<int>& frames) {
-      return frames.end() - std::lower_bound(frames.begin(), frames.end(), frame);
-    };
-    if (from(lost) > from(found)) return frame;
+// The frames among which the most more are lost than found, if these are `least` or more. `lost`:
+// of each frame, whether it is; none without a cloud.
+std::optional<FrameSpan> MostlyLost(const std::vector<std::optional<bool>>& lost, int least) {
+  std::optional<FrameSpan> span;
+  int most = least - 1, more = 0, first = 0;
+  for (std::size_t t = 0; t < lost.size(); ++t) {
+    if (!lost[t]) continue;
+    if (more <= 0) {
+      more = 0;
+      first = static_cast<int>(t);
+    }
+    more += *lost[t] ? 1 : -1;
+    if (more <= most) continue;
+    most = more;
+    span = {first, static_cast<int>(t)};
   }
-  return lost.back();
+  return span;
 }
 
 // How far a cloud may be from a body that is not lost, m.
@@ -52,8 +63,8 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
   const double width = MatchWidth(position[0]);
   const Eigen::VectorXd alike = Eigen::VectorXd::Ones(recording.particle_count());
   const double most = MostDistance(position, recording.surface, width);
-  double seen = 0, all = 0;
-  std::vector<int> lost, found;  // frames
+  double seen = 0, all = 0, sum = 0, clouds = 0;
+  std::vector<std::optional<bool>> lost(position.size());
   for (std::size_t t = 1; t < position.size(); ++t) {
     Points& points = registered.recording.points[t];
     points.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -68,14 +79,15 @@ RegisteredClouds TellPoints(const Recording& recording, const std::vector<Points
     all += static_cast<double>(points.cols());
     const double distance = UsualDistance(DistancesToNearest(position[t], recording.surface[t]));
     if (std::isnan(distance)) continue;  // no cloud
-    const bool is_lost_now =
-        distance > most || seen_now < kFewestTold * static_cast<double>(points.cols());
-    (is_lost_now ? lost : found).push_back(static_cast<int>(t));
+    sum += distance;
+    ++clouds;
+    lost[t] = distance > most || seen_now < kFewestTold * static_cast<double>(points.cols());
   }
   registered.seen = seen / all;
   registered.fit = FitOfClouds(position, recording);
-  const bool is_lost = registered.fit.distance > most || registered.seen < kFewestTold;
-  if (is_lost && !lost.empty()) registered.lost_from = LostFrom(lost, found);
+  registered.distance = sum / clouds;
+  registered.lost = MostlyLost(
+      lost, std::max(kFewestLost, static_cast<int>(std::ceil(kShortestLoss * recording.fps))));
   return registered;
 }
 

@@ -12,14 +12,21 @@
 
 namespace physpring {
 
+// Frames from the first to the last one.
+struct FrameSpan {
+  int first, last;
+  bool operator==(const FrameSpan&) const = default;
+};
+
 struct RegisteredClouds {
   // The clouds' recording with `points`, NaN where no point of the cloud tells of one.
   Recording recording;
-  double seen = 0;  // the part of all points in all frames after frame 0 that clouds tell of
-  CloudFit fit;     // of the points where they are followed to
-  // The frame from which on, to the end, clouds mostly are not where the points are, or tell of
+  double seen = 0;      // the part of all points in all frames after frame 0 that clouds tell of
+  CloudFit fit;         // of the points where they are followed to
+  double distance = 0;  // as fit.distance, mean of all frames with a cloud, m
+  // Where the body is lost, if it is: clouds mostly are not where the points are, or tell of
   // hardly any of them.
-  std::optional<int> lost_from;
+  std::optional<FrameSpan> lost;
   int outliers = 0;  // points of the first cloud that were left out
 };
 

@@ -93,7 +93,7 @@ TEST(RegisterClouds, SpreadsPointsOverAShapeThatIsKnown) {
   ASSERT_EQ(registered.recording.point_count(), 120);
   EXPECT_NEAR(registered.recording.points[0].row(0).maxCoeff(), surface.row(0).maxCoeff(),
               kSpacing);
-  EXPECT_EQ(registered.lost_from, std::nullopt);
+  EXPECT_EQ(registered.lost, std::nullopt);
   EXPECT_LT(OffTruth(registered.recording, truth), 0.4 * kSpacing);
 }
 
@@ -105,7 +105,7 @@ TEST(RegisterClouds, LeavesOutFarPointsOfTheFirstCloud) {
   clouds.surface[0].col(90) << 0, 0.5, 0.2;
   const RegisteredClouds registered = RegisterClouds(clouds, 100);
   EXPECT_EQ(registered.outliers, 2);
-  EXPECT_EQ(registered.lost_from, std::nullopt);
+  EXPECT_EQ(registered.lost, std::nullopt);
   EXPECT_LT(OffTruth(registered.recording, truth), 0.4 * kSpacing);
 }
 
@@ -114,14 +114,22 @@ TEST(RegisterClouds, IsLikeItself) {
   const Recording truth = SwungCloth(false), clouds = CloudsOf(truth, 1);
   const Recording known = RegisterClouds(clouds, 0).recording;
   const RegisteredClouds like = RegisterCloudsLike(clouds, known);
-  EXPECT_EQ(like.lost_from, std::nullopt);
+  EXPECT_EQ(like.lost, std::nullopt);
   EXPECT_LT(OffTruth(like.recording, truth), 0.4 * kSpacing);
 }
 
 TEST(RegisterClouds, SaysThatItIsLost) {
   Recording clouds = CloudsOf(SwungCloth(false), 1);
   for (std::size_t t = 40; t < clouds.surface.size(); ++t) clouds.surface[t].array() += 1;
-  EXPECT_EQ(RegisterClouds(clouds, 100).lost_from, 40);
+  const int last = clouds.frame_count() - 1;
+  EXPECT_EQ(RegisterClouds(clouds, 100).lost, (FrameSpan{40, last}));
+}
+
+TEST(RegisterClouds, SaysThatItIsLostForAWhile) {
+  Recording clouds = CloudsOf(SwungCloth(false), 1);
+  constexpr int kFirst = 10, kEnd = 25;
+  for (int t = kFirst; t < kEnd; ++t) clouds.surface[static_cast<std::size_t>(t)].array() += 1;
+  EXPECT_EQ(RegisterClouds(clouds, 100).lost, (FrameSpan{kFirst, kEnd - 1}));
 }
 
 TEST(RegisterClouds, RefusesWhatIsNoBody) {
