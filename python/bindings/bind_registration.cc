@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
+#include "jobs/interior.h"
 #include "jobs/registration.h"
 #include "python/bindings/given_recordings.h"
 #include "python/bindings/watched_work.h"
 #include "registration/placed_twin.h"
 #include "registration/register_markers.h"
+#include "twin/split_objects.h"
 
 namespace physpring {
 namespace {
@@ -45,6 +48,23 @@ GivenRecording RegisterMarkersOf(const GivenRecording& clouds, bool rod) {
   return Registered(clouds, registered.recording, WarningsOf(registered));
 }
 
+GivenRecording FilledInterior(const GivenRecording& given, const std::string& mesh, double spacing,
+                              bool surface) {
+  FilledRecording filled;
+  RunWatched(nb::none(), [&](const TellShare& /*tell*/) {
+    filled = FillInterior(given.recording, given.entry.path, {mesh, spacing, surface});
+  });
+  return Registered(given, filled.recording, filled.warnings);
+}
+
+std::vector<GivenRecording> Split(const GivenRecording& given) {
+  const std::vector<Recording> parts = SplitObjects(given.recording);
+  if (parts.size() == 1) return {given};
+  std::vector<GivenRecording> split;
+  for (const Recording& part : parts) split.push_back(InMemory(part.name, StoreRecording(part)));
+  return split;
+}
+
 }  // namespace
 
 void BindRegistration(nb::module_& module) {
@@ -60,6 +80,9 @@ void BindRegistration(nb::module_& module) {
       },
       nb::arg("clouds"), nb::arg("points"), nb::arg("shape"), nb::arg("refine"), nb::arg("threads"),
       nb::arg("like").none(), nb::arg("like_twin").none(), nb::arg("callback").none());
+  module.def("interior", &FilledInterior, nb::arg("recording"), nb::arg("mesh"), nb::arg("spacing"),
+             nb::arg("surface"));
+  module.def("split", &Split, nb::arg("recording"));
   module.def("register_markers", &RegisterMarkersOf, nb::arg("clouds"), nb::arg("rod"));
 }
 

@@ -18,7 +18,7 @@ from physpring._evaluation import Evaluation, Track, evaluate, predict, track
 from physpring._export import export
 from physpring._many import Sweep, sweep, train_many
 from physpring._recordings import load_dataset, record
-from physpring._registration import register
+from physpring._registration import interior, register, split
 from physpring._simulation import Simulator, simulate
 from physpring._training import train
 from physpring._warnings import PhyspringWarning
@@ -28,6 +28,6 @@ __version__: str = getattr(_core, '__version__')
 __all__ = [
     'Error', 'Evaluation', 'Level', 'PhyspringWarning', 'Recording', 'Report', 'Simulator',
     'SimulatorState', 'Sweep', 'Track', 'Twin', '__version__', 'diagnose', 'evaluate', 'export',
-    'kernel', 'load_dataset', 'predict', 'record', 'register', 'simulate', 'sweep', 'track', 'train',
-    'train_many'
+    'interior', 'kernel', 'load_dataset', 'predict', 'record', 'register', 'simulate', 'split',
+    'sweep', 'track', 'train', 'train_many'
 ]

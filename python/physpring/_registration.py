@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Clouds of points without names -> a recording of points that are followed."""
+"""What makes recordings ready to be trained on: clouds of points without names, recordings of several
+objects, and objects of which only the surface is seen."""
 from __future__ import annotations
 
 import os
@@ -7,7 +8,8 @@ from collections.abc import Callable
 from typing import Any, Union
 
 from physpring import _core
-from physpring._recordings import RecordingLike, one_recording, threads_of, whole
+from physpring._recordings import RecordingLike, number, one_recording, threads_of, whole
+from physpring._training import in_words_of_python
 
 #: What tells where the particles of an object are: a recording or a twin of it, or a path of one.
 KnownPoints = Union[_core.Recording, _core.Twin, str, os.PathLike]
@@ -60,6 +62,34 @@ def register(clouds: RecordingLike,
         like=known if isinstance(known, _core.Recording) else None,
         like_twin=known if isinstance(known, _core.Twin) else None,
         callback=callback)
+
+
+def split(recording: RecordingLike) -> list[_core.Recording]:
+    """A recording of each of the objects that a recording shows (its array `object`), as
+    `physpring split` makes them; the recording itself where that is one."""
+    return _core.split(one_recording(recording, 'fit'))
+
+
+def interior(recording: RecordingLike,
+             mesh: str | os.PathLike,
+             *,
+             spacing: float = 0.01,
+             surface: bool = False) -> _core.Recording:
+    """The recording with particles inside its object, which no camera sees, as `physpring interior`
+    makes them.
+
+    mesh: file of the object's surface (OBJ, PLY, STL, GLB), on which the recording's points are in
+        frame 0; glTF is turned from y up to z up.
+    spacing: of the particles inside, m. surface: also on the surface where no point is.
+
+    Where the mesh and the points do not fit is a PhyspringWarning. Raises Error for what the program
+    would refuse.
+    """
+    given = one_recording(recording, 'fit')
+    try:
+        return _core.interior(given, os.fspath(mesh), number('spacing', spacing, 1e-6, 10), surface)
+    except _core.Error as error:
+        raise _core.Error(in_words_of_python(str(error))) from None
 
 
 def _known(given: KnownPoints) -> _core.Recording | _core.Twin:
