@@ -32,9 +32,7 @@ Points WithNoise(Points shape) {
   return shape;
 }
 
-double RootMeanSquare(const Points& difference) {
-  return std::sqrt(difference.cwiseAbs2().mean());
-}
+double RootMeanSquare(const Points& difference) { return std::sqrt(difference.cwiseAbs2().mean()); }
 
 TEST(QuietShape, IsNearerToTheTruthThanWhatWasMeasured) {
   const Points from = Ribbon(1e3);
