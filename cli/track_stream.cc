@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "cli/warnings.h"
@@ -20,11 +23,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::array<std::string_view, 4> kKeys = {"points", "cloud", "controllers", "held"};
 constexpr double kFar = 1000;  // m
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // [[x, y, z], null, ...] as 3 x any number; null: NaN.
-Points PointsOf(const Json& frame, const char* key, bool may_be_unseen) {
+Points PointsOf(const Json& frame, const char* key) {
   const auto found = frame.find(key);
   if (found == frame.end() || found->is_null()) return Points(3, 0);
   if (!found->is_array()) throw Error(fmt::format("'{}' is not a list of points", key));
@@ -33,9 +37,8 @@ Points PointsOf(const Json& frame, const char* key, bool may_be_unseen) {
     const Json& point = (*found)[i];
     const bool is_point = point.is_array() && point.size() == 3 && point[0].is_number() &&
                           point[1].is_number() && point[2].is_number();
-    if (!is_point && !(may_be_unseen && point.is_null())) {
-      throw Error(
-          fmt::format("'{}' [{}] is not [x, y, z]{}", key, i, may_be_unseen ? " or null" : ""));
+    if (!is_point && !point.is_null()) {
+      throw Error(fmt::format("'{}' [{}] is not [x, y, z] or null", key, i));
     }
     for (int j = 0; j < 3; ++j) {
       const double coordinate = is_point ? point[j].get<double>() : kNan;
@@ -49,16 +52,29 @@ Points PointsOf(const Json& frame, const char* key, bool may_be_unseen) {
   return points;
 }
 
+// [true, false, ...]
+std::optional<ControllerMask> HeldOf(const Json& frame) {
+  const auto found = frame.find("held");
+  if (found == frame.end() || found->is_null()) return {};
+  const auto is_flag = [](const Json& one) { return one.is_boolean(); };
+  if (!found->is_array() || !std::all_of(found->begin(), found->end(), is_flag)) {
+    throw Error("'held' is not a list of true and false");
+  }
+  return found->get<ControllerMask>();
+}
+
 LiveFrame ParseFrame(const std::string& line) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) throw Error("is not an object of JSON (which has null, not NaN)");
   for (const auto& item : json.items()) {
-    if (item.key() != "points" && item.key() != "cloud" && item.key() != "controllers") {
-      throw Error(fmt::format("'{}' is not 'points', 'cloud' or 'controllers'", item.key()));
+    if (std::find(kKeys.begin(), kKeys.end(), item.key()) == kKeys.end()) {
+      throw Error(
+          fmt::format("'{}' is not 'points', 'cloud', 'controllers' or 'held'", item.key()));
     }
   }
-  return {{PointsOf(json, "points", true), PointsOf(json, "cloud", true)},
-          PointsOf(json, "controllers", false)};
+  return {{PointsOf(json, "points"), PointsOf(json, "cloud")},
+          PointsOf(json, "controllers"),
+          HeldOf(json)};
 }
 
 // To a micrometre, or a micrometre a second.

@@ -4,6 +4,7 @@
 #ifndef PHYSPRING_TRACKER_LIVE_TRACKER_H_
 #define PHYSPRING_TRACKER_LIVE_TRACKER_H_
 
+#include <optional>
 #include <vector>
 
 #include "tracker/tracker_bank.h"
@@ -20,14 +21,16 @@ struct LiveOptions {
 
 struct LiveFrame {
   FrameMeasurement measured;  // `named` of the twin's points, or of none; NaN: not seen
-  Points controllers;         // 3 x controllers, m
+  Points controllers;         // 3 x controllers, m; NaN: where it was, of one that does not hold
+  std::optional<ControllerMask> held;  // which of them hold; none: as in the last frame
 };
 
 class LiveTracker {
  public:
   // Level 0 of the twin, at rest in the first frame. What is not seen there is where the points and
   // controllers around it take it from the twin's reference configuration. Throws Error, as
-  // Advance does, for a frame of other numbers of points or controllers than the twin's.
+  // Advance does, for a frame of other numbers of points or controllers than the twin's, and for a
+  // controller that holds and is nowhere.
   LiveTracker(const Twin& twin, const LiveOptions& options, const LiveFrame& first);
 
   // Goes on to the next frame, 1 / fps later. Throws Error if the motion diverges.
@@ -36,13 +39,17 @@ class LiveTracker {
   const StateTracker& state() const { return bank_.best(); }
 
  private:
-  void ExpectNumbers(const LiveFrame& frame) const;
-  TrackerBank MakeBank(const Twin& twin, const LiveOptions& options, const LiveFrame& first) const;
+  // Which controllers hold in the frame. Throws Error where the frame is not of this object.
+  ControllerMask HeldIn(const LiveFrame& frame) const;
+  // What is released on the way to a frame, and takes hold.
+  void SetGrasps(const ControllerMask& held, FrameInput* input);
+  TrackerBank MakeBank(const Twin& twin, const LiveOptions& options, const LiveFrame& first);
 
   int points_, controllers_;
   double fps_, delay_;
   int frame_ = 0;
-  Recording lately_;  // the controllers of the last frames, as far back as they act
+  ControllerMask held_, holding_;  // in the last frame; and in the one before it, too
+  Recording lately_;               // the controllers of the last frames, as far back as they act
   TrackerBank bank_;
 };
 

@@ -30,7 +30,8 @@ TrackerBank::TrackerBank(const SpringMassSystem& system, const Environment& envi
   }
 }
 
-void TrackerBank::Advance(const FrameInput& input, const FrameMeasurement& measured) {
+void TrackerBank::Advance(FrameInput input, const FrameMeasurement& measured) {
+  if (input.attached.any()) input.attached.nodes = best().position();
   std::vector<NodeStates<double>*> states;
   for (StateTracker& tracker : trackers_) states.push_back(tracker.state());
   simulators_->AdvanceFrame(input, states);

@@ -24,8 +24,9 @@ class TrackerBank {
               const SimulationOptions& simulation, double noise, int surface, const Points& nodes,
               const Points& velocity);
 
-  // Goes on by one frame.
-  void Advance(const FrameInput& input, const FrameMeasurement& measured);
+  // Goes on by one frame. A controller that takes hold takes hold of the body as the best tracker
+  // has it.
+  void Advance(FrameInput input, const FrameMeasurement& measured);
 
   // The one whose state is the best.
   const StateTracker& best() const { return trackers_[best_]; }

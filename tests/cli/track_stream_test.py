@@ -72,6 +72,25 @@ class Stream(unittest.TestCase):
             self.assertEqual(program.communicate()[1], "")
         self.assertEqual(program.returncode, 0)
 
+    def test_hands_let_go_and_take_hold(self):
+        with self.run_stream("--fps", "50") as program:
+            for step in range(12):
+                frame = self.frame(0)
+                if step == 4:
+                    frame["held"] = [True, False]
+                if 4 <= step < 8:
+                    frame["controllers"][1] = None
+                if step == 8:
+                    frame["held"] = [True, True]
+                program.stdin.write(json.dumps(frame) + "\n")
+                program.stdin.flush()
+                state = json.loads(program.stdout.readline())
+            for seen, place in zip(self.points, state["position"]):
+                for a, b in zip(seen, place):
+                    self.assertLess(abs(a - b), 2e-3)
+            self.assertEqual(program.communicate()[1], "")
+        self.assertEqual(program.returncode, 0)
+
     def refused(self, *lines):
         with self.run_stream() as program:
             errors = program.communicate("".join(line + "\n" for line in lines))[1]
@@ -89,6 +108,12 @@ class Stream(unittest.TestCase):
         self.assertIn("line 1 of the input: has 0 controllers, expected 2", self.refused("{}"))
         bad = json.dumps({**self.frame(0), "points": [[0, 0]]})
         self.assertIn("line 2 of the input: 'points' [0] is not [x, y, z]", self.refused(first, bad))
+        words = json.dumps({**self.frame(0), "held": [1, 0]})
+        self.assertIn("'held' is not a list of true and false", self.refused(words))
+        more = json.dumps({**self.frame(0), "held": [True]})
+        self.assertIn("says of 1 controllers whether they hold, expected 2", self.refused(more))
+        nowhere = json.dumps({**self.frame(0), "controllers": [None, self.controllers[1]]})
+        self.assertIn("does not say where controller 0 is, which holds", self.refused(nowhere))
         few = json.dumps({**self.frame(0), "points": [[0, 0, 0]]})
         self.assertIn("line 2 of the input: has 1 points, expected 32", self.refused(first, few))
 

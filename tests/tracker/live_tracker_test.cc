@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/small_twin.h"
@@ -11,6 +12,7 @@
 #include "twin/effects/registry.h"
 #include "twin/environment.h"
 #include "twin/error.h"
+#include "twin/grasps.h"
 #include "twin/recorded_input.h"
 
 namespace physpring {
@@ -66,6 +68,36 @@ TEST_F(LiveTrackerTest, DoesWhatTheBankDoesWithARecording) {
     }
     EXPECT_GT((live.state().position() - start).cwiseAbs().maxCoeff(), 0.01);
   }
+}
+
+// The same with a hand that opens and closes. Nobody says where it is while it is open.
+TEST_F(LiveTrackerTest, LetsGoAndTakesHoldAsInARecording) {
+  constexpr int kOpens = 5, kCloses = 11;
+  recording_.held.setConstant(kFrames, 2, true);
+  recording_.held.block(kOpens, 1, kCloses - kOpens, 1).setConstant(false);
+  FindShapesWhenHeld(&recording_);
+  const TrackedBody body = BodyToTrack(twin_.levels[0].system, recording_.fps, 0);
+  TrackerBank bank(body.system, {twin_.gravity, twin_.ground.plane},
+                   {1 / recording_.fps, body.substeps, twin_.controller_velocity, {true, true}},
+                   kNoise, recording_.point_count(),
+                   recording_.start.leftCols(recording_.particle_count()),
+                   Points::Zero(3, recording_.particle_count()));
+  LiveTracker live(twin_, {recording_.fps, kNoise}, Frame(0));
+  LiveTracker holds(twin_, {recording_.fps, kNoise}, Frame(0));
+  double apart = 0;
+  for (int t = 1; t < kFrames; ++t) {
+    const LiveFrame known = Frame(t);
+    LiveFrame told = known;
+    if (t == kOpens || t == kCloses) told.held = ControllerMask{true, t == kCloses};
+    if (t >= kOpens && t < kCloses) told.controllers.col(1).setConstant(std::nan(""));
+    live.Advance(told);
+    holds.Advance(known);
+    bank.Advance(RecordedInput(recording_, t, 0), known.measured);
+    const Points position = live.state().position();
+    EXPECT_LT((position - bank.best().position()).cwiseAbs().maxCoeff(), 1e-9) << t;
+    apart = std::max(apart, (position - holds.state().position()).cwiseAbs().maxCoeff());
+  }
+  EXPECT_GT(apart, 1e-3);
 }
 
 TEST_F(LiveTrackerTest, StartsWhereAPartOfItIsSeen) {
