@@ -106,9 +106,9 @@ void LiveTracker::SetGrasps(const ControllerMask& held, FrameInput* input) {
 
 void LiveTracker::Advance(const LiveFrame& frame) {
   const ControllerMask held = HeldIn(frame);
-  const Points& before = lately_.controllers.back();
-  lately_.controllers.push_back(
-      frame.controllers.array().isFinite().select(frame.controllers, before));
+  const Points places =
+      frame.controllers.array().isFinite().select(frame.controllers, lately_.controllers.back());
+  lately_.controllers.push_back(places);
   const auto needed = 3 + static_cast<std::size_t>(std::max(0.0, std::ceil(delay_ * fps_)));
   if (lately_.controllers.size() > needed) lately_.controllers.erase(lately_.controllers.begin());
   const int last = static_cast<int>(lately_.controllers.size()) - 1;
