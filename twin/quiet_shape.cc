@@ -35,6 +35,7 @@ Points QuietShape(const Points& from, const Points& to, double noise) {
   const Points start = from(Eigen::all, known), measured = to(Eigen::all, known);
   Points best;
   double least = std::numeric_limits<double>::infinity();  // mean square of a coordinate, m^2
+  double most_own = 0;  // of the noise: with what so many others carry from their own noise
   for (int others : {6, 8, 12, 16, 24}) {
     if (others >= start.cols()) break;
     const Points moved = ByOthers(start, measured, others);
@@ -42,12 +43,12 @@ Points QuietShape(const Points& from, const Points& to, double noise) {
     if (square >= least) continue;
     least = square;
     best = moved;
+    most_own = square / (1 + 2.0 / others);  // a rigid motion has 6 numbers, of 3 x others
   }
-  if (best.cols() == 0 || !(noise > 0)) return to;
-  const double own = noise * noise;
-  const double of_others = std::max(0.0, least - own);
+  if (best.cols() == 0 || !(noise > 0) || !(least > 0)) return to;
+  const double own = std::min(noise * noise, most_own);
   Points quiet = to;
-  quiet(Eigen::all, known) += own / (own + of_others) * (best - measured);
+  quiet(Eigen::all, known) += own / least * (best - measured);
   return quiet;
 }
 

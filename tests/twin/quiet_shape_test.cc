@@ -48,6 +48,15 @@ TEST(QuietShape, KeepsWhatTheColumnsAroundDoNotTell) {
   EXPECT_LT(RootMeanSquare(QuietShape(from, measured, kNoise) - measured), 0.3 * kNoise);
 }
 
+// A motion that is rough from frame to frame looks like noise.
+TEST(QuietShape, KnowsNoiseThatIsLessThanItIsTold) {
+  const Points from = Ribbon(1e3), truth = Ribbon(1), measured = WithNoise(truth);
+  const Points quiet = QuietShape(from, measured, kNoise);
+  EXPECT_LT((QuietShape(from, measured, 5 * kNoise) - quiet).norm(),
+            0.1 * (quiet - measured).norm());
+  EXPECT_EQ(QuietShape(from, from, kNoise), from);
+}
+
 TEST(QuietShape, IsWhatWasMeasuredWithoutNoise) {
   const Points measured = WithNoise(Ribbon(0.2));
   EXPECT_EQ(QuietShape(Ribbon(1e3), measured, 0), measured);
