@@ -76,6 +76,10 @@ void Run(const TrackArguments& arguments) {
   fmt::print("{}: {} particles in {} frames, {:.0f} frames a second ({:.1f} x real time)\n",
              arguments.output, motion.position[0].cols(), motion.position.size(),
              motion.frames_per_second, motion.frames_per_second / recording.fps);
+  if (motion.softened > 0) {
+    fmt::print("{} sub-steps a frame, for which {:.0f} % of the springs are softened\n",
+               motion.substeps, 100 * motion.softened);
+  }
   PrintErrors(arguments, motion);
   PrintWarnings(WarningsOf(motion));
 }

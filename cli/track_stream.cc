@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/warnings.h"
+#include "jobs/tracking.h"
 #include "tracker/live_tracker.h"
 #include "twin/error.h"
 
@@ -115,6 +116,8 @@ void TrackStream(const std::string& twin_path, LiveOptions options) {
         tracker->Advance(measured);
       } else {
         tracker.emplace(twin, options, measured);
+        const std::string softened = WarningOfSoftened(tracker->softened());
+        if (!softened.empty()) PrintWarnings({softened});
       }
     } catch (const Error& error) {
       throw Error(fmt::format("line {} of the input: {}", frame + 1, error.what()));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "registration/placed_twin.h"
+#include "tracker/tracked_body.h"
 #include "twin/clock_offset.h"
 #include "twin/error.h"
 
@@ -20,10 +21,20 @@ Recording RecordingToTrack(const Twin& twin, Recording recording, const TrackOpt
                   recording.name));
 }
 
+std::string WarningOfSoftened(double softened) {
+  if (softened <= kMostSoftened) return "";
+  return fmt::format(
+      "so few sub-steps soften {:.0f} % of the springs: the body may be lost, without a word where "
+      "clouds are followed",
+      100 * softened);
+}
+
 std::vector<std::string> WarningsOf(const TrackedMotion& motion) {
   constexpr double kWorse = 1.1;
   const TrackErrors& errors = motion.errors;
   std::vector<std::string> warnings;
+  const std::string softened = WarningOfSoftened(motion.softened);
+  if (!softened.empty()) warnings.push_back(softened);
   if (motion.cloud && std::isnan(motion.cloud->distance)) {
     warnings.emplace_back("the last second has no cloud: from the last one on, it is predicted");
   } else if (motion.cloud && motion.cloud->distance > motion.cloud->spacing) {

@@ -16,8 +16,11 @@ namespace physpring {
 // clouds alone that are not to be followed.
 Recording RecordingToTrack(const Twin& twin, Recording recording, const TrackOptions& options);
 
+// Empty unless so many springs are softened that the body may be lost.
+std::string WarningOfSoftened(double softened);
+
 // A twin that tracks worse than what needs no measurement, or no twin, is of no use; nor is one
-// that is not where the cloud is.
+// that is not where the cloud is, or hardly the twin any more.
 std::vector<std::string> WarningsOf(const TrackedMotion& motion);
 
 }  // namespace physpring

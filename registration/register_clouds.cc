@@ -67,11 +67,20 @@ void CarryBack(const Points& cloud, const Points& now, const Points& start,
   }
 }
 
-// What the clouds of the first frames that are fitted show together, in frame 0.
+// The first frames that are fitted. What comes later has no part in the shape of frame 0.
+Recording FramesOfShape(Recording clouds) {
+  const int frames = std::min({kFramesOfShape, clouds.train_frames, clouds.frame_count()});
+  clouds.surface.resize(static_cast<std::size_t>(frames));
+  clouds.points.resize(static_cast<std::size_t>(frames));
+  clouds.controllers.resize(static_cast<std::size_t>(frames));
+  if (clouds.held.size() > 0) clouds.held.conservativeResize(frames, Eigen::NoChange);
+  return clouds;
+}
+
+// What the rough body's clouds show together, in frame 0.
 Points ShapeOf(const Recording& rough, const std::vector<Points>& position) {
-  const auto frames = static_cast<std::size_t>(std::min(kFramesOfShape, rough.train_frames));
   std::vector<Eigen::Vector3d> carried;
-  for (std::size_t t = 0; t < frames; ++t) {
+  for (std::size_t t = 0; t < position.size(); ++t) {
     CarryBack(rough.surface[t], position[t], position[0], &carried);
   }
   const auto most = static_cast<std::size_t>(kMostPerPoint * position[0].cols());
@@ -112,7 +121,7 @@ RegisteredClouds RegisterClouds(const Recording& clouds, int points, int threads
   points = PointsToMake(clouds, points, kPerSeen);
   const int few = std::max(kFewestSeen, static_cast<int>(kRoughPart * points));
   const Points first = PointsOf(clouds.surface[0]), kept = WithoutOutliers(first);
-  const Recording rough = AtRestInFrame0(clouds, SpreadParticles(kept, few));
+  const Recording rough = FramesOfShape(AtRestInFrame0(clouds, SpreadParticles(kept, few)));
   const Points shape = ShapeOf(rough, FollowClouds(rough, threads));
   RegisteredClouds registered =
       Register(AtRestInFrame0(clouds, SpreadParticles(shape, points)), threads);

@@ -56,6 +56,7 @@ LiveTracker::LiveTracker(const Twin& twin, const LiveOptions& options, const Liv
 TrackerBank LiveTracker::MakeBank(const Twin& twin, const LiveOptions& options,
                                   const LiveFrame& first) {
   const TrackedBody body = BodyToTrack(twin.levels[0].system, fps_, options.substeps);
+  softened_ = body.softened;
   const Points start = StartOf(twin, first, holding_);
   lately_.controllers.emplace_back(start.rightCols(controllers_));
   const Points nodes = start.leftCols(start.cols() - controllers_);

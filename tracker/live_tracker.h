@@ -37,6 +37,8 @@ class LiveTracker {
   void Advance(const LiveFrame& frame);
 
   const StateTracker& state() const { return bank_.best(); }
+  // The part of the springs that are softened (tracked_body.h).
+  double softened() const { return softened_; }
 
  private:
   // Which controllers hold in the frame. Throws Error where the frame is not of this object.
@@ -46,7 +48,7 @@ class LiveTracker {
   TrackerBank MakeBank(const Twin& twin, const LiveOptions& options, const LiveFrame& first);
 
   int points_, controllers_;
-  double fps_, delay_;
+  double fps_, delay_, softened_ = 0;
   int frame_ = 0;
   ControllerMask held_, holding_;  // in the last frame; and in the one before it, too
   Recording lately_;               // the controllers of the last frames, as far back as they act

@@ -187,6 +187,8 @@ TrackedMotion TrackRecording(const Twin& twin, const Recording& recording,
   const SpringMassSystem& system = twin.levels[0].system;
   const TrackedBody body = BodyToTrack(system, recording.fps, options.substeps);
   TrackedMotion motion;
+  motion.substeps = body.substeps;
+  motion.softened = body.softened;
   motion.hidden = Hidden(recording, options);
   const std::vector<FrameMeasurement> told = ToldOf(recording, motion.hidden, options.cloud);
   TrackerBank tracker(

@@ -44,6 +44,8 @@ struct TrackedMotion {
   // The same distance of the twin's motion from frame 0 on, without any measurement, m; NaN without
   // clouds, and where that motion diverges.
   double predicted_cloud_distance = std::numeric_limits<double>::quiet_NaN();
+  int substeps = 0;              // a frame
+  double softened = 0;           // the part of the springs that are (tracked_body.h)
   double frames_per_second = 0;  // of processor time, by one thread
 };
 

@@ -21,6 +21,8 @@ TrackedBody BodyToTrack(const SpringMassSystem& system, double fps, int substeps
   const double timestep = 1 / (kSafety * fps * substeps);
   if (timestep > bound.timestep) {
     SoftenStiffNodes(timestep, &body.system);
+    const auto softer = body.system.stiffness.array() < system.stiffness.array();
+    body.softened = static_cast<double>(softer.count()) / std::max(1, system.spring_count());
     bound = ComputeStabilityBound(body.system);
     body.substeps = std::max(substeps, StableSubsteps(bound, 1 / fps, kSafety));
   }

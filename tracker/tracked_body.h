@@ -10,8 +10,12 @@ namespace physpring {
 
 struct TrackedBody {
   SpringMassSystem system;
-  int substeps;  // a frame
+  int substeps;         // a frame
+  double softened = 0;  // the part of the springs that are
 };
+
+// With more of its springs softened than this, a body may be lost.
+inline constexpr double kMostSoftened = 2.0 / 3;
 
 // `substeps`: a frame, 0: as many as it takes. Fewer than it takes soften the stiffest nodes
 // (stability.h); effects may then still ask for more of them.

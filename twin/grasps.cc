@@ -9,6 +9,7 @@
 
 #include "twin/checks/motion_scale.h"
 #include "twin/local_motion.h"
+#include "twin/neighbours.h"
 #include "twin/quiet_shape.h"
 #include "twin/recorded_rod.h"
 
@@ -53,6 +54,39 @@ void FillReleased(const NpzFields& fields, Recording* recording) {
   }
 }
 
+// The points of a frame. Those that are not seen in it are between where they were seen just before
+// and just after, if they were.
+Points SeenAbout(const std::vector<Points>& frames, int frame) {
+  constexpr int kAbout = 5;  // frames, either way
+  const int last = static_cast<int>(frames.size()) - 1;
+  const auto sees = [&](int t, Eigen::Index i) {
+    return frames[static_cast<std::size_t>(t)].col(i).allFinite();
+  };
+  Points shape = frames[static_cast<std::size_t>(frame)];
+  for (Eigen::Index i = 0; i < shape.cols(); ++i) {
+    if (sees(frame, i)) continue;
+    int before = frame, after = frame;
+    while (before > std::max(0, frame - kAbout) && !sees(before, i)) --before;
+    while (after < std::min(last, frame + kAbout) && !sees(after, i)) ++after;
+    if (!sees(before, i) || !sees(after, i)) continue;
+    const Eigen::Vector3d from = frames[static_cast<std::size_t>(before)].col(i);
+    const Eigen::Vector3d to = frames[static_cast<std::size_t>(after)].col(i);
+    shape.col(i) = from + (frame - before) / static_cast<double>(after - before) * (to - from);
+  }
+  return shape;
+}
+
+// Whether most of the points near a place of frame 0 are known in a shape.
+bool AreMostKnown(const Points& start, const Points& shape, const Eigen::Vector3d& place) {
+  constexpr int kNear = 8;
+  int known = 0, near = 0;
+  for (const Neighbour& one : NeighbourSearch(start).Nearest(place, kNear)) {
+    known += shape.col(one.index).allFinite() ? 1 : 0;
+    ++near;
+  }
+  return 2 * known > near;
+}
+
 // Its columns of start, rest and order, where the grasp does not begin in frame 0.
 void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording& read, int column,
                     Recording* recording) {
@@ -63,12 +97,19 @@ void PlaceLateGrasp(const NpzFields& fields, const Grasp& grasp, const Recording
   }
   const int particles = read.particle_count();
   const Points start = read.start.leftCols(read.point_count());
-  const auto first = static_cast<std::size_t>(grasp.first);
+  const Points shape = SeenAbout(read.points, grasp.first);
   const std::optional<Eigen::Vector3d> place =
-      LocalMotion(read.points[first], start).Move(read.controllers[first].col(grasp.controller));
+      LocalMotion(shape, start)
+          .Move(read.controllers[static_cast<std::size_t>(grasp.first)].col(grasp.controller));
   if (!place) {
     fields.Fail("points", fmt::format("sees nothing in frame {}, in which controller {} takes hold",
                                       grasp.first, grasp.controller));
+  }
+  if (!AreMostKnown(start, shape, *place)) {
+    recording->warnings.push_back(fmt::format(
+        "{}: few of the points around controller {} are seen when it takes hold in frame "
+        "{}, so what it holds is a guess",
+        fields.path(), grasp.controller, grasp.first));
   }
   recording->start.col(particles + column) = *place;
   recording->rest.col(particles + column) =
@@ -145,7 +186,7 @@ void FindShapesWhenHeld(Recording* recording) {
   for (int t = 1; t < recording->held.rows(); ++t) {
     if (!(recording->held.row(t) && !recording->held.row(t - 1)).any()) continue;
     Points shape = Points::Constant(3, start.cols(), std::nan(""));
-    shape.leftCols(recording->point_count()) = recording->points[static_cast<std::size_t>(t)];
+    shape.leftCols(recording->point_count()) = SeenAbout(recording->points, t);
     shape = QuietShape(start, shape, noise);
     const LocalMotion motion(start, shape);
     for (Eigen::Index i = 0; i < shape.cols(); ++i) {

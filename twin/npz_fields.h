@@ -24,6 +24,8 @@ class NpzFields {
   // `arrays` must live as long as this object; messages begin with `path`.
   NpzFields(const Npz& arrays, std::string path) : arrays_(arrays), path_(std::move(path)) {}
 
+  const std::string& path() const { return path_; }
+
   bool Has(const std::string& name) const { return arrays_.contains(name); }
 
   // Fixes the size of a symbol, or tells it.

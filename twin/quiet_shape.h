@@ -9,9 +9,9 @@ namespace physpring {
 
 // `to`, where each column is moved towards where the columns around it in `from` carry it from
 // there, as a rigid body, 3 x any number, m; a column that is NaN in either stays. Both say where
-// it is, and each counts by its precision. `noise`: standard deviation of a coordinate of `to`, m.
-// How far off the others are, and how many of them say it best, is found by leaving each column
-// out.
+// it is, and each counts by its precision. `noise`: standard deviation of a coordinate of `to`, m,
+// or more. How far off the others are, and how many of them say it best, is found by leaving each
+// column out.
 Points QuietShape(const Points& from, const Points& to, double noise);
 
 }  // namespace physpring

@@ -264,8 +264,6 @@ void AddWarnings(const std::string& path, const std::vector<std::string>& odditi
 
 // Works out what is not given, and says what is odd.
 void Check(const std::string& path, bool velocity_given, Recording& recording) {
-  const std::string left_out = LeaveOutOutliers(path, &recording);
-  if (!left_out.empty()) recording.warnings.push_back(left_out);
   TellObjects(path, recording);
   CutRodBetweenObjects(&recording);
   if (!velocity_given) SetVelocity(path, recording);
@@ -285,6 +283,10 @@ Recording ReadArrays(const Npz& arrays, const std::string& path) {
   BringToOneRate(fields, path, &recording);
   ReadParticles(fields, recording);
   SetStart(fields, path, recording);
+  if (recording.point_count() > 0) {  // before any is taken for where a hand takes hold
+    const std::string left_out = LeaveOutOutliers(path, &recording);
+    if (!left_out.empty()) recording.warnings.push_back(left_out);
+  }
   SplitGrasps(fields, &recording);
   return recording;
 }

@@ -83,13 +83,20 @@ void TellOfTimes(const std::string& path, const std::vector<double>& times, cons
       path, 1e3 * off));
 }
 
-// As it was nearest to each frame.
+// As it was nearest to each frame; where a frame is missing, what held before it and after it.
 void ResampleHeld(const std::vector<double>& times, const FrameGrid& grid, Recording* recording) {
   if (recording->held.size() == 0) return;
   const auto measured = recording->held;
   recording->held.resize(grid.frames, measured.cols());
-  for (int t = 0; t < grid.frames; ++t)
-    recording->held.row(t) = measured.row(Nearest(times, grid.Time(t)));
+  for (int t = 0; t < grid.frames; ++t) {
+    const int near = Nearest(times, grid.Time(t));
+    recording->held.row(t) = measured.row(near);
+    const double late =
+        (times[static_cast<std::size_t>(near)] - grid.Time(t)) * grid.fps;  // frames
+    const int other = late > 0 ? near - 1 : near + 1;
+    if (std::abs(late) <= 0.5 || other < 0 || other >= measured.rows()) continue;
+    recording->held.row(t) = recording->held.row(t) && measured.row(other);
+  }
 }
 
 std::vector<double> RegularTimes(const Recording& recording) {

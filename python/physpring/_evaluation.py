@@ -104,10 +104,13 @@ def _millimetres(level: dict[str, Any]) -> str:
     return 'no data' if error is None else f'{1e3 * error:.2f} mm'
 
 
+_MOST = 10**6  # as the program's options
+
+
 def _expect_counts(**counts: int | None) -> None:
     for name, count in counts.items():
         if count is not None:
-            whole(name, count, 1)
+            whole(name, count, 1, _MOST)
 
 
 def evaluate(twin: _core.Twin | str | os.PathLike,

@@ -91,6 +91,12 @@ class Stream(unittest.TestCase):
             self.assertEqual(program.communicate()[1], "")
         self.assertEqual(program.returncode, 0)
 
+    def test_warns_of_a_body_that_is_hardly_the_twin(self):
+        with self.run_stream("--substeps", "1") as program:
+            errors = program.communicate(json.dumps(self.frame(0)) + "\n")[1]
+        self.assertIn("% of the springs: the body may be lost", errors)
+        self.assertEqual(program.returncode, 0)
+
     def refused(self, *lines):
         with self.run_stream() as program:
             errors = program.communicate("".join(line + "\n" for line in lines))[1]

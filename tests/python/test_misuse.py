@@ -131,6 +131,8 @@ def test_options_out_of_bounds(twin, recording, tmp_path):
     assert 'checkpoint_interval' in message(physpring.train, recording, checkpoint_interval=np.nan)
     assert 'option of the training' in message(physpring.train, recording, latent=np.nan)
     assert message(physpring.evaluate, twin, recording, substeps=0) == 'substeps is 0, expected 1 or more'
+    assert message(physpring.track, twin, recording, hide=0.5, substeps=10**6 + 1) == (
+        'substeps is 1000001, expected at most 1000000')
     assert message(physpring.evaluate, twin, recording, anchor=-1) == 'anchor is -1, expected 1 or more'
     assert 'timestep' in message(physpring.export, twin, tmp_path / 'm', timestep=-1)
     assert message(physpring.predict, twin, [recording, recording]).startswith('2 recordings are given')

@@ -28,8 +28,11 @@ TEST(BodyToTrack, SoftensTheStiffestForFewerSubsteps) {
   const TrackedBody body = BodyToTrack(system, kFps, substeps);
   EXPECT_EQ(body.substeps, substeps);
   EXPECT_LT(1 / kFps / substeps, ComputeStabilityBound(body.system).timestep);
-  EXPECT_LT((body.system.stiffness.array() < system.stiffness.array()).count(),
-            system.spring_count());
+  const auto softer = body.system.stiffness.array() < system.stiffness.array();
+  EXPECT_GT(body.softened, 0);
+  EXPECT_LT(body.softened, 1);
+  EXPECT_NEAR(body.softened * system.spring_count(), softer.count(), 1e-9);
+  EXPECT_EQ(BodyToTrack(system, kFps, 0).softened, 0);
 }
 
 TEST(BodyToTrack, TakesAsManyStagesAsItNeeds) {

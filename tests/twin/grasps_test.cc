@@ -2,9 +2,12 @@
 // Grasps that begin and end: how they are read.
 #include "twin/grasps.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "tests/support/recording_file.h"
 #include "tests/support/swung_rope.h"
@@ -89,6 +92,60 @@ TEST_F(HeldRecording, EachGraspIsAControllerOfItsOwn) {
   EXPECT_TRUE(RecordedInput(read, 14, 0).attached.attached.empty());
   EXPECT_EQ(RecordedInput(read, 13, 0).attached.nodes, read.points[12]);
   EXPECT_EQ(LateGraspsOf(read), (ControllerMask{false, true}));
+}
+
+class LateGrasp : public HeldRecording {
+ protected:
+  static constexpr int kParticles = 20, kFrames = 24, kTakesHold = 12;
+
+  LateGrasp() {
+    rope_ = SwungRope(kParticles, kFrames);
+    for (int t = 0; t < kFrames; ++t) {  // it goes along with its hand
+      rope_.points[t].colwise() += (rope_.controllers[t] - rope_.controllers[0]).col(0);
+    }
+    rope_.held.setConstant(kFrames, 1, true);
+    rope_.held.topRows(kTakesHold).setConstant(false);
+  }
+
+  Recording Read(const Recording& rope) {
+    WriteRecording(rope, path_);
+    return ReadRecording(path_);
+  }
+
+  // That the hand takes hold of, from the hand, m.
+  static Eigen::Vector3d Place(const Recording& read) { return read.start.col(kParticles); }
+
+  Recording rope_;
+};
+
+TEST_F(LateGrasp, IsNotMisledByAMeasurementThatJumps) {
+  const Recording right = Read(rope_);
+  rope_.points[kTakesHold](1, 0) += 0.5;
+  const Recording read = Read(rope_);
+  EXPECT_LT((Place(read) - Place(right)).norm(), 1e-3);
+  const auto nodes = [](const Recording& one) { return one.shape_when_held.at(kTakesHold); };
+  EXPECT_LT((nodes(read) - nodes(right)).cwiseAbs().maxCoeff(), 2e-3);
+}
+
+TEST_F(LateGrasp, TakesFromTheFramesBesideItWhatIsNotSeen) {
+  const Recording right = Read(rope_);
+  for (int t : {kTakesHold - 1, kTakesHold}) rope_.points[t].setConstant(kNan);
+  const Recording read = Read(rope_);
+  EXPECT_LT((Place(read) - Place(right)).norm(), 5e-3);
+  for (const std::string& warning : read.warnings) {
+    EXPECT_EQ(warning.find("is a guess"), std::string::npos) << warning;
+  }
+}
+
+TEST_F(LateGrasp, SaysThatItIsAGuessWhereFewPointsAreSeen) {
+  for (int t = kTakesHold - 7; t < kTakesHold + 8; ++t) {
+    rope_.points[t].leftCols(kParticles - 3).setConstant(kNan);
+  }
+  const Recording read = Read(rope_);
+  EXPECT_THAT(read.warnings,
+              testing::Contains(testing::HasSubstr(
+                  "few of the points around controller 0 are seen when it takes hold "
+                  "in frame 12, so what it holds is a guess")));
 }
 
 TEST_F(HeldRecording, RefusesWhatIsNoGrasp) {

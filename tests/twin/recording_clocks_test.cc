@@ -39,6 +39,23 @@ TEST_F(TimedRecording, PutsMissingFramesIn) {
                                "there");
 }
 
+// Nobody knows when in a gap a hand closes, so it does at its end; and it opens at its beginning.
+TEST_F(TimedRecording, HandsAreOpenWhereFramesAreMissing) {
+  arrays_.erase("fps");
+  for (const char* of_start : {"rest", "order"}) arrays_.erase(of_start);
+  SetTimes("timestamps", {0, 0.02, 0.08, 0.1});
+  const std::vector<int> closes = {0, 0, 1, 1}, opens = {1, 1, 0, 0};
+  arrays_["held"] = NpzArray::Ints({4, 1}, closes.data());
+  Recording read = ReadChanged();
+  ASSERT_EQ(read.frame_count(), 6);
+  EXPECT_FALSE(read.held.col(0).head(4).any());
+  EXPECT_TRUE(read.held.col(0).tail(2).all());
+  arrays_["held"] = NpzArray::Ints({4, 1}, opens.data());
+  read = ReadChanged();
+  EXPECT_TRUE(read.held.col(0).head(2).all());
+  EXPECT_FALSE(read.held.col(0).tail(4).any());
+}
+
 TEST_F(TimedRecording, SaysThatUnevenFramesAreInterpolated) {
   arrays_.erase("fps");
   SetTimes("timestamps", {0, 0.02, 0.043, 0.06});

@@ -54,6 +54,23 @@ int FramesWithoutPoints(const std::vector<Points>& clouds) {
   }));
 }
 
+// Frames whose cloud is exactly the one before, while hands move.
+std::vector<int> RepeatedClouds(const Recording& recording) {
+  std::vector<int> frames;
+  for (int t = 1; t < static_cast<int>(recording.surface.size()); ++t) {
+    const auto now = static_cast<std::size_t>(t);
+    const Points &cloud = recording.surface[now], &before = recording.surface[now - 1];
+    const bool is_same =
+        cloud.cols() == before.cols() && cloud.array().isFinite().any() &&
+        (cloud.array() == before.array() || (cloud.array().isNaN() && before.array().isNaN()))
+            .all();
+    if (is_same && recording.controllers[now] != recording.controllers[now - 1]) {
+      frames.push_back(t);
+    }
+  }
+  return frames;
+}
+
 using Place = std::array<double, 3>;
 constexpr Place kOrigin{0, 0, 0};
 
@@ -120,6 +137,14 @@ std::vector<std::string> FindOddClouds(const Recording& recording) {
   if (without > 0) {
     lines.push_back(
         fmt::format("{} of {} frames have no cloud", without, recording.surface.size()));
+  }
+  constexpr std::size_t kFewestRepeated = 3;
+  const std::vector<int> repeated = RepeatedClouds(recording);
+  if (repeated.size() >= kFewestRepeated) {
+    lines.push_back(
+        fmt::format("{} frames, the first is {}, have exactly the cloud of the frame before, while "
+                    "controllers move: did the camera stop, or were frames recorded twice?",
+                    repeated.size(), repeated[0]));
   }
   const Points& first = recording.surface[0];
   if (!first.array().isFinite().any()) return lines;

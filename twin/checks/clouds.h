@@ -17,7 +17,7 @@ namespace physpring {
 std::string TakeFillingAsNone(const std::string& where, std::vector<Points>* clouds);
 
 // What is odd about the clouds of a recording without points, a line each: frames without any,
-// units, a ground above them, controllers far from them.
+// or with the one before again, units, a ground above them, controllers far from them.
 std::vector<std::string> FindOddClouds(const Recording& recording);
 
 }  // namespace physpring

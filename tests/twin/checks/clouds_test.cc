@@ -41,6 +41,19 @@ TEST(Clouds, AreMissing) {
   EXPECT_THAT(FindOddClouds(sheet), ElementsAre("5 of 20 frames have no cloud"));
 }
 
+TEST(Clouds, StandStillWhileHandsMove) {
+  Recording sheet = Sheet();
+  for (int t = 12; t < kFrames; ++t) {
+    sheet.controllers[static_cast<std::size_t>(t)].row(2).array() += 0.01 * t;
+  }
+  EXPECT_THAT(FindOddClouds(sheet),
+              ElementsAre("8 frames, the first is 12, have exactly the cloud of the frame before, "
+                          "while controllers move: did the camera stop, or were frames recorded "
+                          "twice?"));
+  for (std::size_t t = 0; t < kFrames; ++t) sheet.surface[t](2, 3) += 1e-9 * static_cast<double>(t);
+  EXPECT_THAT(FindOddClouds(sheet), IsEmpty());
+}
+
 TEST(Clouds, AreInMillimetres) {
   Recording sheet = Sheet();
   for (Points& cloud : sheet.surface) cloud *= 1e3;
