@@ -22,6 +22,7 @@ void Keep(int first, int end, std::vector<Frame>* frames) {
 
 Recording Part(Recording recording, int first, int end) {
   Keep(first, end, &recording.points);
+  Keep(first, end, &recording.weight);
   Keep(first, end, &recording.controllers);
   Keep(first, end, &recording.force);
   Keep(first, end, &recording.surface);

@@ -48,13 +48,15 @@ void StateTracker::Correct(const FrameMeasurement& measured) {
   Move(moved, gain_ / (2 - gain_));  // Benedict and Bordner's choice, of the gain that it has
 }
 
-StateTracker::Pull StateTracker::PullOfNamed(const Points& named) const {
+StateTracker::Pull StateTracker::PullOfNamed(const FrameMeasurement& measured) const {
+  const Points& named = measured.named;
   const Eigen::Index nodes = predicted_.cols();
   Pull pull{Points::Zero(3, nodes), Eigen::VectorXd::Zero(nodes), 0, {}};
   for (Eigen::Index i = 0; i < std::min(nodes, named.cols()); ++i) {
     if (!named.col(i).allFinite()) continue;
     pull.offset.col(i) = named.col(i) - predicted_.col(i);
-    pull.precision[i] = 1 / (options_.noise * options_.noise);
+    const double weight = measured.weight.size() > 0 ? measured.weight[i] : 1;
+    pull.precision[i] = weight / (options_.noise * options_.noise);
   }
   return pull;
 }
@@ -75,7 +77,7 @@ void StateTracker::AddCloud(const Points& cloud, const Points& moved, double wid
 }
 
 Points StateTracker::DisplacementBy(const FrameMeasurement& measured) {
-  const Pull named = PullOfNamed(measured.named);
+  const Pull named = PullOfNamed(measured);
   const bool has_cloud = measured.cloud.array().isFinite().any();
   const double unit = has_cloud ? width_ : options_.noise;
   if (!has_cloud) {

@@ -23,6 +23,8 @@ namespace physpring {
 struct FrameMeasurement {
   Points named;  // 3 x nodes or fewer: the first nodes; a column of NaN is not seen
   Points cloud;  // 3 x any number; a column of NaN is no point
+  Eigen::RowVectorXd weight =
+      {};  // of those named, their inverse variance beside noise^-2; empty: 1
 };
 
 struct TrackerOptions {
@@ -63,7 +65,7 @@ class StateTracker {
     double unmatched = 0;   // points of a cloud that belong to no node
     Eigen::VectorXd count;  // (nodes): how many belong to a node
   };
-  Pull PullOfNamed(const Points& named) const;
+  Pull PullOfNamed(const FrameMeasurement& measured) const;
   void AddCloud(const Points& cloud, const Points& moved, double width, Pull* pull) const;
   // By which the measurements displace the nodes from where they are predicted.
   Points DisplacementBy(const FrameMeasurement& measured);

@@ -55,6 +55,7 @@ std::vector<FrameMeasurement> ToldOf(const Recording& recording, const std::vect
       continue;
     }
     told[t].named = recording.points[t];
+    if (!recording.weight.empty()) told[t].weight = recording.weight[t].row(0);
     for (int i : hidden) told[t].named.col(i).setConstant(kNotSeen);
   }
   return told;

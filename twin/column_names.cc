@@ -12,4 +12,12 @@ std::string NameOfColumn(const Recording& recording, Eigen::Index column) {
   return fmt::format("controller {}", column - recording.interior_count());
 }
 
+std::string NameOfController(const Recording& recording, int controller) {
+  const std::string name = fmt::format("controller {}", controller);
+  if (recording.held.size() == 0 || recording.held(0, controller)) return name;
+  int first = 0;
+  while (first < recording.held.rows() && !recording.held(first, controller)) ++first;
+  return fmt::format("{}, the grasp from frame {} on,", name, first);
+}
+
 }  // namespace physpring

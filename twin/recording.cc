@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <string_view>
 
@@ -30,12 +31,12 @@ namespace physpring {
 namespace {
 
 constexpr double kStrongestGravity = 1000;  // m/s^2
-constexpr std::array<std::string_view, 19> kArrays{
+constexpr std::array<std::string_view, 20> kArrays{
     "points",   "controllers",  "fps",        "mass",
     "gravity",  "ground",       "interior",   "rest",
     "velocity", "order",        "rod",        "surface",
     "track",    "train_frames", "timestamps", "controller_timestamps",
-    "force",    "held",         "object"};
+    "force",    "held",         "object",     "weight"};
 constexpr double kSmallestDistance = 1e-7;            // m, between two particles
 constexpr double kAssumedMass = 0.1;                  // kg
 constexpr double kLeastMass = 1e-9, kMostMass = 1e6;  // kg
@@ -56,8 +57,37 @@ std::vector<Points> ReadTracks(NpzFields& fields, const std::string& path, const
   return frames;
 }
 
+// What counts nothing is not seen. The others count 1 on the average.
+void ReadWeight(NpzFields& fields, Recording& recording) {
+  recording.weight = fields.FramesOfNumbers("weight", "N", "T");
+  if (recording.weight[0].rows() != 1) fields.Fail("weight", "has 3 dimensions, expected (T, N)");
+  double sum = 0, seen = 0;
+  for (std::size_t t = 0; t < recording.weight.size(); ++t) {
+    for (Eigen::Index i = 0; i < recording.point_count(); ++i) {
+      auto point = recording.points[t].col(i);
+      double& weight = recording.weight[t](0, i);
+      if (point.allFinite() && !(weight >= 0)) {
+        fields.Fail("weight",
+                    fmt::format("holds {} at [{}, {}], expected 0 or more", weight, t, i));
+      }
+      if (weight == 0) point.setConstant(std::numeric_limits<double>::quiet_NaN());
+      if (!point.allFinite()) continue;
+      sum += weight;
+      ++seen;
+    }
+  }
+  if (seen == 0) fields.Fail("weight", "is 0 for all that is seen");
+  for (std::size_t t = 0; t < recording.weight.size(); ++t) {
+    for (Eigen::Index i = 0; i < recording.point_count(); ++i) {
+      double& weight = recording.weight[t](0, i);
+      weight = recording.points[t].col(i).allFinite() ? weight * seen / sum : 1;
+    }
+  }
+}
+
 void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording) {
   recording.points = ReadTracks(fields, path, "points", "N", recording);
+  if (fields.Has("weight")) ReadWeight(fields, recording);
   if (fields.Extent("T") < 2) fields.Fail("points", "has fewer than 2 frames");
   if (!recording.points[0].array().isFinite().any()) {
     fields.Fail("points", "has nothing seen in frame 0, which a motion starts from");
@@ -72,8 +102,8 @@ void ReadPoints(NpzFields& fields, const std::string& path, Recording& recording
 
 // Whether nothing is said of points that are followed.
 bool HasCloudsAlone(const NpzFields& fields) {
-  constexpr std::array kOfPoints{"points", "interior", "rest",  "velocity",
-                                 "order",  "rod",      "object"};
+  constexpr std::array kOfPoints{"points", "interior", "rest",   "velocity",
+                                 "order",  "rod",      "object", "weight"};
   return fields.Has("surface") && std::none_of(kOfPoints.begin(), kOfPoints.end(),
                                                [&](const char* name) { return fields.Has(name); });
 }

@@ -29,6 +29,10 @@ struct Recording {
   // sizes. NaN: not measured. May be empty.
   std::vector<Eigen::MatrixXd> force;
 
+  // T frames of 1 x N: how much each measurement of a point counts beside the others, as its
+  // inverse variance; 1 on the average of those that are seen. Empty: all alike.
+  std::vector<Eigen::MatrixXd> weight;
+
   double mass = 0.1;                      // the object's, kg
   Eigen::Vector3d gravity{0, 0, -9.81};   // m/s^2
   std::optional<Eigen::Vector4d> ground;  // plane (a, b, c, d): a x + b y + c z = d, |(a,b,c)| = 1
@@ -60,6 +64,9 @@ struct Recording {
   // What it worked out and is no cause for concern (velocities of a start in motion).
   std::vector<std::string> notes;
 
+  double WeightOf(int frame, Eigen::Index point) const {
+    return weight.empty() ? 1 : weight[static_cast<std::size_t>(frame)](0, point);
+  }
   int frame_count() const { return static_cast<int>(points.size()); }
   int point_count() const { return points.empty() ? 0 : static_cast<int>(points[0].cols()); }
   int interior_count() const { return static_cast<int>(interior.cols()); }

@@ -127,6 +127,7 @@ void BringToOneRate(NpzFields& fields, const std::string& path, Recording* recor
           1,
       2, grid.frames);
   recording->points = ResampleTracks(recording->points, times, grid);
+  recording->weight = ResampleNumbers(recording->weight, times, grid);
   recording->controllers = ResamplePaths(recording->controllers, controller_times, grid);
   if (!recording->track.empty()) recording->track = ResampleTracks(recording->track, times, grid);
   recording->surface = ResampleClouds(recording->surface, times, grid);

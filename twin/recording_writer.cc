@@ -64,6 +64,7 @@ Npz StoreRecording(const Recording& recording) {
     arrays["object"] = NpzArray::Ints({ExtentOf(declared.size())}, declared.data());
   }
   if (recording.held.size() > 0) arrays["held"] = StoreHeld(recording);
+  if (!recording.weight.empty()) arrays["weight"] = StoreNumbers(recording.weight);
   if (!recording.force.empty()) arrays["force"] = StoreNumbers(recording.force);
   if (recording.two_clocks) {
     const Eigen::VectorXd times = FrameTimes(recording);

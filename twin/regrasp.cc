@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "twin/column_names.h"
 #include "twin/hierarchy.h"
 #include "twin/local_motion.h"
 #include "twin/neighbours.h"
@@ -101,10 +102,10 @@ Twin HeldAsIn(Recording* recording, Twin twin) {
     SpreadRod(&twin);
   }
   for (const MovedGrasp& one : moved) {
-    recording->notes.push_back(fmt::format(
-        "recording {}: controller {} holds the object {:.3g} m from where it held it in the "
-        "training; its springs hold the nodes that are near it there",
-        recording->name, one.controller, one.distance));
+    recording->notes.push_back(
+        fmt::format("recording {}: {} holds the object {:.3g} m from where it held it in the "
+                    "training; its springs hold the nodes that are near it there",
+                    recording->name, NameOfController(*recording, one.controller), one.distance));
   }
   return twin;
 }

@@ -79,6 +79,7 @@ Recording PartOf(const Recording& recording, int object) {
   part.object.resize(0);
   part.mass *= static_cast<double>(own.size()) / static_cast<double>(particles);
   Keep(seen, &part.points);
+  Keep(seen, &part.weight);
   Keep(hands, &part.controllers);
   Keep(hands, &part.force);
   if (part.held.size() > 0) part.held = recording.held(Eigen::all, hands);

@@ -119,7 +119,8 @@ void BindRecording(nb::module_& module) {
       "  controllers  (T, C, 3) what holds and moves the object; default: nothing does\n"
       "  mass         of the object, kg; default 0.1, with a warning\n"
       "and, optional: ground (4,), gravity (3,), rest, interior, velocity, order, rod,\n"
-      "held, train_frames, surface, track, force, timestamps ... Raises Error as `load` does.");
+      "held, weight, train_frames, surface, track, force, timestamps ... Raises Error as `load` "
+      "does.");
   recording.def(
       "save",
       [](const Class& self, const std::filesystem::path& path) {

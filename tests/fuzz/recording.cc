@@ -50,6 +50,8 @@ std::vector<std::string> physpring::FuzzSeeds() {
   timed["controller_timestamps"] = NpzArray::Doubles({4}, hand_times);
   timed["force"] = NpzArray::Doubles({4, 1, 3}, numbers.data());
   timed["held"] = NpzArray::Ints({4, 1}, held);
+  const double weight[] = {1, 1, 1, 0, 2, 2, 1, 1, 1, 0.5, 1, 1};
+  timed["weight"] = NpzArray::Doubles({4, 3}, weight);
   timed.erase("fps");
   Npz forked = least;
   const int edges[] = {0, 1, 1, 2, 1, 3};

@@ -72,6 +72,21 @@ class TrackedRope : public testing::Test {
   std::vector<Points> truth_;
 };
 
+TEST_F(TrackedRope, CountsMeasurementsByTheirWeights) {
+  std::mt19937_64 generator(9);
+  recording_.weight.assign(kFrames, Eigen::MatrixXd::Ones(1, kParticles));
+  for (int t = 1; t < kFrames; ++t) {
+    for (int i = t % 3; i < kParticles; i += 3) {  // a third is poor
+      for (int j = 0; j < 3; ++j) recording_.points[t](j, i) += 20 * kNoise * Normal(&generator);
+      recording_.weight[t](0, i) = 1 / 400.0;
+    }
+  }
+  const Twin twin = TwinOf(Wrong());
+  const double weighted = OffTruth(TrackRecording(twin, recording_, {}));
+  recording_.weight.clear();
+  EXPECT_LT(weighted, 0.6 * OffTruth(TrackRecording(twin, recording_, {})));
+}
+
 TEST_F(TrackedRope, TrustsARightTwin) {
   const TrackedMotion motion = TrackRecording(TwinOf(system_), recording_, {.hide = 0.5});
   EXPECT_EQ(motion.hidden.size(), kParticles / 2);

@@ -11,6 +11,7 @@
 
 #include "tests/support/recording_file.h"
 #include "tests/support/swung_rope.h"
+#include "twin/column_names.h"
 #include "twin/error.h"
 #include "twin/recorded_input.h"
 
@@ -135,6 +136,13 @@ TEST_F(LateGrasp, TakesFromTheFramesBesideItWhatIsNotSeen) {
   for (const std::string& warning : read.warnings) {
     EXPECT_EQ(warning.find("is a guess"), std::string::npos) << warning;
   }
+}
+
+TEST_F(LateGrasp, IsNamedByItsFrame) {
+  const Recording read = Read(rope_);
+  EXPECT_EQ(NameOfController(read, 0), "controller 0, the grasp from frame 12 on,");
+  rope_.held.setConstant(true);
+  EXPECT_EQ(NameOfController(Read(rope_), 0), "controller 0");
 }
 
 TEST_F(LateGrasp, SaysThatItIsAGuessWhereFewPointsAreSeen) {

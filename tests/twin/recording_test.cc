@@ -2,6 +2,7 @@
 // Recordings are read as they were written.
 #include "twin/recording.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -59,6 +60,29 @@ TEST_F(RecordingFile, IsReadBackWithoutAFile) {
   EXPECT_EQ(back.start, expected.start);
   EXPECT_EQ(back.velocity, expected.velocity);
   EXPECT_EQ(back.train_frames, expected.train_frames);
+}
+
+TEST_F(RecordingFile, WeightsCountOneOnTheAverageAndNoneIsNotSeen) {
+  const std::vector<double> weight = {4, 4, 4, 4, 4, kNan, 4, 0, 8, 4, 4, 4};
+  arrays_["weight"] = NpzArray::Doubles({4, 3}, weight.data());
+  const Recording read = ReadChanged();
+  const double mean = 44 / 10.0;
+  EXPECT_EQ(read.weight.size(), 4u);
+  EXPECT_DOUBLE_EQ(read.WeightOf(2, 2), 8 / mean);
+  EXPECT_DOUBLE_EQ(read.WeightOf(0, 0), 4 / mean);
+  EXPECT_TRUE(read.points[2].col(1).array().isNaN().all());
+  EXPECT_EQ(MakeRecording().WeightOf(2, 2), 1);
+  WriteRecording(read, path_);
+  EXPECT_NEAR(ReadRecording(path_).WeightOf(2, 2), 8 / mean, 1e-12);
+  SetValue("weight", 4, -1);
+  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'weight' holds -1 at [1, 1], expected 0 or more");
+  SetValue("weight", 4, kNan);
+  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'weight' holds nan at [1, 1], expected 0 or more");
+  const std::vector<double> none(12, 0);
+  arrays_["weight"] = NpzArray::Doubles({4, 3}, none.data());
+  EXPECT_EQ(ErrorOfChanged(), path_ + ": array 'weight' is 0 for all that is seen");
+  arrays_["weight"] = NpzArray::Doubles({3, 4}, weight.data());
+  EXPECT_THAT(ErrorOfChanged(), testing::HasSubstr("array 'weight' has the shape (3, 4)"));
 }
 
 TEST_F(RecordingFile, NeedsOnlyPointsControllersAndFps) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "twin/clock_offset.h"
+#include "twin/column_names.h"
 #include "twin/error.h"
 #include "twin/numbering.h"
 #include "twin/recorded_input.h"
@@ -36,10 +37,11 @@ void ExpectSameObject(const std::string& path, const Recording& recording,
 // A twin has springs for one place of each grasp: that of its first recording.
 void WarnOfMovedGrasps(const Recording& first, Recording* recording) {
   for (const MovedGrasp& moved : FindMovedGrasps(first.start, *recording)) {
-    recording->warnings.push_back(fmt::format(
-        "recording {}: controller {} holds the object {:.3g} m from where it does in {}, but the "
-        "twin's springs hold it there: leave this recording out, or train on it alone",
-        recording->name, moved.controller, moved.distance, first.name));
+    recording->warnings.push_back(
+        fmt::format("recording {}: {} holds the object {:.3g} m from where it does in {}, but the "
+                    "twin's springs hold it there: leave this recording out, or train on it alone",
+                    recording->name, NameOfController(*recording, moved.controller), moved.distance,
+                    first.name));
   }
 }
 

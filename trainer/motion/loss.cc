@@ -17,13 +17,15 @@ std::vector<int> SeenColumns(const Points& points) {
   return seen;
 }
 
-double AddTrackLoss(const Points& position, const Points& measured, const LossOptions& options,
-                    Points* position_bar) {
+double AddTrackLoss(const Points& position, const Recording& recording, int frame,
+                    const LossOptions& options, Points* position_bar) {
+  const Points& measured = recording.points[frame];
   const std::vector<int> seen = SeenColumns(measured);
-  const double scale = options.track_weight / (3.0 * static_cast<double>(seen.size()));
+  const double each = options.track_weight / (3.0 * static_cast<double>(seen.size()));
   const double beta = options.track_beta;
   double loss = 0;
   for (int i : seen) {
+    const double scale = each * recording.WeightOf(frame, i);
     for (int j = 0; j < 3; ++j) {
       const double r = position(j, i) - measured(j, i);
       const bool inner = std::abs(r) < beta;
@@ -56,7 +58,7 @@ double AddFrameLoss(const Points& position, const Recording& recording, int fram
                     const LossOptions& options, Points* position_bar) {
   double loss = 0;
   if (options.track_weight > 0) {
-    loss += AddTrackLoss(position, recording.points[frame], options, position_bar);
+    loss += AddTrackLoss(position, recording, frame, options, position_bar);
   }
   if (options.chamfer_weight > 0) {
     const Points& surface =

@@ -2,7 +2,7 @@
 // The training loss of one frame (PhysTwin's two terms, with true counts):
 //   chamfer  w_c / n  sum_i |x_nn(i) - g_i|^2       g: measured surface points, nn: nearest
 //   particle track    w_t / 3n sum_i sum_xyz smoothL1(x_i - g_i)   g: measured points, by index,
-//   seen ones only
+//   seen ones only, each times its weight (Recording::weight)
 // smoothL1(r) = r^2 / (2 beta) for |r| < beta, |r| - beta / 2 beyond.
 #ifndef PHYSPRING_TRAINER_MOTION_LOSS_H_
 #define PHYSPRING_TRAINER_MOTION_LOSS_H_

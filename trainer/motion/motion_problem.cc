@@ -32,10 +32,12 @@ void MotionProblem::CountResiduals() {
 
 void MotionProblem::SetResiduals(int e, const std::vector<Points>& particles,
                                  Eigen::VectorXd* residuals) const {
-  const std::vector<Points>& measured = motion_.episode(e).recording->points;
+  const Recording& recording = *motion_.episode(e).recording;
+  const std::vector<Points>& measured = recording.points;
   std::size_t row = offset_[e];
   ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int frame, int point) {
-    residuals->segment<3>(row) = particles[frame].col(point) - measured[frame].col(point);
+    residuals->segment<3>(row) = std::sqrt(recording.WeightOf(frame, point)) *
+                                 (particles[frame].col(point) - measured[frame].col(point));
     row += 3;
   });
 }
@@ -139,7 +141,8 @@ Eigen::VectorXd MotionProblem::JacobianTransposedTimes(const Eigen::VectorXd& u)
     std::vector<Points> bars = LiftedMotion::ZerosLike(motions_[e].particles());
     std::size_t row = offset_[e];
     ForEachSeen(motion_.episode(e), FrameUse::kFit, [&](int frame, int point) {
-      bars[frame].col(point) = u.segment<3>(row);
+      const double weight = motion_.episode(e).recording->WeightOf(frame, point);
+      bars[frame].col(point) = std::sqrt(weight) * u.segment<3>(row);
       row += 3;
     });
     return bars;

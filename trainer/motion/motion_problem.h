@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fitting a system to recordings as a least-squares problem: the residuals are the distances, along
-// x, y and z, of predicted from measured particles [m]. Only particles that are seen in fitted
-// frames count.
+// x, y and z, of predicted from measured particles [m], times the root of the measurement's weight
+// (Recording::weight). Only particles that are seen in fitted frames count.
 #ifndef PHYSPRING_TRAINER_MOTION_MOTION_PROBLEM_H_
 #define PHYSPRING_TRAINER_MOTION_MOTION_PROBLEM_H_
 

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trainer/motion/observer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace physpring {
 namespace {
 
-// Calls correct(i, a, b / T) for every point seen in a frame that is corrected.
+// Calls correct(i, a, b / T) for every point seen in a frame that is corrected. One that counts
+// less than the average corrects less.
 template <class Correct>
 void ForEachCorrected(double gain, const Recording& recording, int frame, Correct correct) {
   if (gain <= 0) return;
-  const double a = gain, b = a * a / (2 - a) * recording.fps;
   const Points& measured = recording.points[frame];
   for (int i = 0; i < measured.cols(); ++i) {
-    if (!std::isnan(measured(0, i))) correct(i, a, b);
+    if (std::isnan(measured(0, i))) continue;
+    const double a = gain * std::min(1.0, recording.WeightOf(frame, i));
+    correct(i, a, a * a / (2 - a) * recording.fps);
   }
 }
 

@@ -8,7 +8,8 @@
 // taken before the correction: the prediction errors of system identification (Ljung, System
 // Identification, 1999, ch. 7). Fitted with a gain that falls step by step to 0, parameters that
 // are far off, and motions that slip or topple at one moment or another, do not lead the fit into a
-// side valley.
+// side valley. A measurement that counts less than the average (Recording::weight) has that part of
+// the gain.
 #ifndef PHYSPRING_TRAINER_MOTION_OBSERVER_H_
 #define PHYSPRING_TRAINER_MOTION_OBSERVER_H_
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "twin/checks/smooth_motion.h"
+#include "twin/column_names.h"
 #include "twin/neighbours.h"
 
 namespace physpring {
@@ -81,9 +82,9 @@ std::string FarGrasp(const Recording& recording, const MotionScale& scale) {
     const double distance = search.Nearest(place, 1)[0].distance;
     if (distance < kFarSpacings * scale.spacing || distance < kFarSize * scale.size) continue;
     return fmt::format(
-        "controller {} starts {:.3g} m from the nearest particle, where particles are {:.3g} m "
+        "{} starts {:.3g} m from the nearest particle, where particles are {:.3g} m "
         "apart: is it where the object is held?",
-        c, distance, scale.spacing);
+        NameOfController(recording, c), distance, scale.spacing);
   }
   return "";
 }

@@ -39,7 +39,9 @@ double FrameLoss(const Points& position, const Recording& recording, const LossO
 class FrameLossDerivative : public testing::TestWithParam<LossOptions> {};
 
 TEST_P(FrameLossDerivative, AgreesWithDifferences) {
-  const Recording recording = TwoFrames();
+  Recording recording = TwoFrames();
+  recording.weight.assign(2, Eigen::MatrixXd::Constant(1, kPoints, 0.5));
+  recording.weight[1](0, 1) = 3;
   Points position = RandomPositions();
   Points bar = Points::Zero(3, position.cols());
   AddFrameLoss(position, recording, 1, GetParam(), &bar);
@@ -93,6 +95,15 @@ TEST(FrameLoss, TrackTermHasTheStatedValue) {
   position(0, 0) += 0.2;
   position(1, 5) -= 0.8;
   EXPECT_NEAR(FrameLoss(position, recording, {3, 0, 0.5}), 3.0 / 15 * (0.04 + 0.8 - 0.25), 1e-12);
+}
+
+TEST(FrameLoss, WeightsAreFactorsOfThePointsTerms) {
+  Recording recording = TwoFrames();
+  const Points position = RandomPositions();
+  const LossOptions options{.chamfer_weight = 0};
+  const double even = FrameLoss(position, recording, options);
+  recording.weight.assign(2, Eigen::MatrixXd::Constant(1, kPoints, 2));
+  EXPECT_NEAR(FrameLoss(position, recording, options), 2 * even, 1e-12);
 }
 
 TEST(FrameLoss, ChamferTermHasTheStatedValue) {

@@ -80,6 +80,22 @@ TEST(MotionProblem, JacobianTransposedTimesIsTheTranspose) {
   }
 }
 
+TEST(MotionProblem, WeightsAreThoseOfSquares) {
+  Case c;
+  const Eigen::VectorXd x = Uniform(c.parameters.size(), 0.1, 1);
+  const Eigen::VectorXd even = *c.Problem().Residuals(x);
+  c.recordings[0].weight.assign(6, Eigen::MatrixXd::Ones(1, kPoints));
+  c.recordings[0].weight[2](0, 3) = 9;
+  MotionProblem problem = c.Problem();
+  const Eigen::VectorXd r = *problem.Linearise(x);
+  Eigen::VectorXd expected = even;
+  expected.segment<3>(3 * (kPoints + 3)) *= 3;
+  EXPECT_EQ(r, expected);
+  const Eigen::VectorXd v = Uniform(x.size(), 1, 2), u = Uniform(r.size(), 1, 12);
+  const Eigen::VectorXd jv = problem.JacobianTimes(v), ju = problem.JacobianTransposedTimes(u);
+  EXPECT_NEAR(u.dot(jv), v.dot(ju), 1e-5 * u.norm() * jv.norm());
+}
+
 TEST(MotionProblem, LineariseGivesTheResiduals) {
   const Case c;
   MotionProblem problem = c.Problem();

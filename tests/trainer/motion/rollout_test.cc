@@ -107,6 +107,24 @@ TEST(Rollout, AdjointUnderAnObserverAgreesWithDifferences) {
   ExpectPasses(c, {{"drag", &c.system.drag, 1e-2, adjoint.gradient.drag}});
 }
 
+TEST(Rollout, AnObserverFollowsMeasurementsThatCountLittleLess) {
+  Case c;
+  MoveAway(&c.recording);
+  c.options.observer_gain = 0.4;
+  const auto followed = c.Run()->positions();
+  c.recording.weight.assign(kFrames, Eigen::MatrixXd::Constant(1, 6, 2));
+  EXPECT_EQ(c.Run()->positions(), followed);
+  for (Eigen::MatrixXd& weight : c.recording.weight) weight.setConstant(0.5);
+  const auto less = c.Run()->positions();
+  c.options.observer_gain = 0.2;
+  c.recording.weight.clear();
+  EXPECT_EQ(c.Run()->positions(), less);
+  c.options.observer_gain = 0.4;
+  c.recording.weight.assign(kFrames, Eigen::MatrixXd::Constant(1, 6, 0.3));
+  const RolloutAdjoint adjoint = c.Run()->Adjoint(c.weights);
+  ExpectPasses(c, Each("stiffness", adjoint.gradient.stiffness, &c.system.stiffness));
+}
+
 TEST(Rollout, AdjointOfKicksAgreesWithDifferences) {
   Case c;
   MoveAway(&c.recording);
