@@ -146,7 +146,7 @@ Twin Checkpoint::Write(const Twin& so_far, const Journal& journal) const {
 }
 
 Twin Checkpoint::WriteFinished(const Twin& twin) const {
-  const Twin labelled = Labelled(twin, true);
+  const Twin labelled = Finished(twin);
   if (!path_.empty()) WriteTwin(labelled, path_);
   return labelled;
 }

@@ -41,6 +41,9 @@ class Checkpoint {
   Twin Write(const Twin& so_far, const Journal& journal) const;
   Twin WriteFinished(const Twin& twin) const;
 
+  // What WriteFinished writes.
+  Twin Finished(const Twin& twin) const { return Labelled(twin, true); }
+
  private:
   bool IsFile() const;
   void ExpectSameTraining(const Twin& twin) const;

@@ -57,10 +57,14 @@ class Running {
     run_.twin = checkpoint_.Write(so_far_, journal_);
     Written(writing.seconds());
   }
-  // It is whole before it is judged, and then says how well it fits.
+  // It says how well it fits. Where that cannot be judged it is written all the same.
   void Finish(Twin twin, const TrainingTask& task) {
-    WriteFinished(twin);
-    run_.fit = JudgeTraining(task, run_.twin);
+    try {
+      run_.fit = JudgeTraining(task, checkpoint_.Finished(twin));
+    } catch (...) {
+      WriteFinished(twin);
+      throw;
+    }
     twin.fit_errors = run_.fit.errors;
     WriteFinished(twin);
     run_.parts.emplace_back("writing checkpoints", checkpoint_seconds_);

@@ -13,7 +13,7 @@ std::string NameOfColumn(const Recording& recording, Eigen::Index column) {
 }
 
 std::string NameOfController(const Recording& recording, int controller) {
-  const std::string name = fmt::format("controller {}", controller);
+  std::string name = fmt::format("controller {}", controller);
   if (recording.held.size() == 0 || recording.held(0, controller)) return name;
   int first = 0;
   while (first < recording.held.rows() && !recording.held(first, controller)) ++first;

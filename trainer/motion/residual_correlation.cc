@@ -21,7 +21,10 @@ void Sums::Add(const Episode& episode, const std::vector<Points>& particles) {
       before.resize(3, 0);
       continue;
     }
-    const Points error = particles[frame].leftCols(measured[frame].cols()) - measured[frame];
+    Points error = particles[frame].leftCols(measured[frame].cols()) - measured[frame];
+    if (const auto& weight = episode.recording->weight; !weight.empty()) {
+      error *= weight[static_cast<std::size_t>(frame)].row(0).cwiseSqrt().asDiagonal();
+    }
     for (int i = 0; i < before.cols(); ++i) {
       const double of_point = error.col(i).dot(before.col(i));
       if (std::isnan(of_point)) continue;

@@ -14,6 +14,19 @@ namespace {
 
 constexpr double kLeastError = 1e-9;  // m
 
+// The mean distance in a frame, each by its weight; NaN where nothing was seen.
+double WeightedError(const Recording& recording, int frame, const Points& particles) {
+  const Points& measured = recording.points[static_cast<std::size_t>(frame)];
+  double sum = 0, weights = 0;
+  for (Eigen::Index i = 0; i < measured.cols(); ++i) {
+    if (std::isnan(measured(0, i))) continue;
+    const double weight = recording.WeightOf(frame, i);
+    sum += weight * (particles.col(i) - measured.col(i)).norm();
+    weights += weight;
+  }
+  return sum / weights;
+}
+
 }  // namespace
 
 FrameTrack TrackOf(const Episode& episode, FrameUse use, const std::vector<Points>& particles) {
@@ -23,7 +36,9 @@ FrameTrack TrackOf(const Episode& episode, FrameUse use, const std::vector<Point
   FrameTrack track;
   for (int frame = 1; frame < episode.frames; ++frame) {
     if (episode.UseOf(frame) != use) continue;
-    const double error = TrackError(measured[frame], particles[frame], nodes);
+    const double error = episode.recording->weight.empty()
+                             ? TrackError(measured[frame], particles[frame], nodes)
+                             : WeightedError(*episode.recording, frame, particles[frame]);
     if (!std::isnan(error)) track.push_back(error);
   }
   return track;

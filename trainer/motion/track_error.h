@@ -10,8 +10,8 @@
 
 namespace physpring {
 
-// Mean distance, m, of predicted from measured points of each frame of one use, in order; frames in
-// which nothing was seen are left out.
+// Mean distance, m, of predicted from measured points of each frame of one use, in order, each
+// point by its weight (Recording::weight); frames in which nothing was seen are left out.
 using FrameTrack = std::vector<double>;
 
 // `particles` are the predicted positions in each frame.

@@ -5,9 +5,11 @@
 
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "tests/support/swung_rope.h"
 #include "trainer/bodies/start_system.h"
+#include "trainer/motion/track_error.h"
 
 namespace physpring {
 namespace {
@@ -52,6 +54,31 @@ TEST(ResidualCorrelation, IsTheShareThatIsNoNoise) {
     for (double& value : frame.reshaped()) value += 1e-3 + noise(random);
   }
   EXPECT_NEAR(moved.Correlation(), 0.5, 0.05);
+}
+
+// Noise of measurements that hardly count does not hide a wrong body.
+TEST(ResidualCorrelation, IsOfWhatCounts) {
+  Moved moved;
+  moved.system.stiffness *= 0.5;
+  const double wrong = moved.Correlation();
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.5);
+  for (Points& frame : moved.recording.points) {
+    for (double& value : frame.leftCols(4).reshaped()) value += noise(random);
+  }
+  EXPECT_LT(moved.Correlation(), 0.5 * wrong);
+  Eigen::MatrixXd weight = Eigen::MatrixXd::Ones(1, 12);
+  weight.leftCols(4).setConstant(1e-6);
+  moved.recording.weight.assign(moved.recording.points.size(), weight);
+  EXPECT_GT(moved.Correlation(), 0.95 * wrong);
+  const auto frames = moved.recording.frame_count();
+  const Episode episode{&moved.recording, frames};
+  std::vector<Points> particles = moved.recording.points;
+  for (Points& frame : particles) {
+    frame.leftCols(4).row(0).array() += 1;  // m
+    frame.rightCols(8).row(1).array() += 1e-3;
+  }
+  EXPECT_NEAR(MeanTrackError(episode, FrameUse::kFit, particles), 1e-3, 2e-6);
 }
 
 TEST(ResidualCorrelation, LeavesOutWhatIsNotSeen) {
