@@ -72,12 +72,13 @@ void Run(const RegisterArguments& arguments) {
   fmt::print("{}: {} points, {:.1f} mm apart; clouds tell of {:.0f} % of them in a frame\n",
              arguments.output, registered.recording.point_count(), 1e3 * registered.fit.spacing,
              100 * registered.seen);
-  fmt::print("clouds are {:.1f} mm from the nearest points, mean of all frames",
-             1e3 * registered.distance);
-  if (std::isfinite(registered.fit.distance)) {
-    fmt::print("; {:.1f} mm in the last second", 1e3 * registered.fit.distance);
+  if (std::isfinite(registered.distance)) {
+    fmt::print("clouds are {:.1f} mm from the nearest points, mean of all frames{}\n",
+               1e3 * registered.distance,
+               std::isfinite(registered.fit.distance)
+                   ? fmt::format("; {:.1f} mm in the last second", 1e3 * registered.fit.distance)
+                   : "");
   }
-  fmt::print("\n");
   PrintWarnings(registration.warnings);
 }
 

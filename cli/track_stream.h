@@ -10,9 +10,8 @@
 
 namespace physpring {
 
-// Follows the object of the twin in that file until the input ends. Without frames a second they
-// are those of the twin. Throws Error, one line that
-// says which one, where a line is not what docs/track.md says.
+// Follows the object of the twin in that file until the input ends. options.fps of 0 is the twin's.
+// Throws Error, one line that says which one, where a line is not what docs/track.md says.
 void TrackStream(const std::string& twin, LiveOptions options);
 
 }  // namespace physpring

@@ -23,7 +23,7 @@ struct RegisteredClouds {
   Recording recording;
   double seen = 0;      // the part of all points in all frames after frame 0 that clouds tell of
   CloudFit fit;         // of the points where they are followed to
-  double distance = 0;  // as fit.distance, mean of all frames with a cloud, m
+  double distance = 0;  // as fit.distance, mean of all frames with a cloud, m; NaN without
   // Where the body is lost, if it is: clouds mostly are not where the points are, or tell of
   // hardly any of them.
   std::optional<FrameSpan> lost;

@@ -23,8 +23,8 @@ namespace physpring {
 struct FrameMeasurement {
   Points named;  // 3 x nodes or fewer: the first nodes; a column of NaN is not seen
   Points cloud;  // 3 x any number; a column of NaN is no point
-  Eigen::RowVectorXd weight =
-      {};  // of those named, their inverse variance beside noise^-2; empty: 1
+  // How much each of those named counts beside the others (Recording::weight); empty: all alike.
+  Eigen::RowVectorXd weight = {};
 };
 
 struct TrackerOptions {
